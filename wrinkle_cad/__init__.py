@@ -1,0 +1,33 @@
+"""Most developable strips between two curves.
+
+Names are exported lazily (PEP 562): importing the package loads no CAD kernel.
+"""
+
+from __future__ import annotations
+
+from importlib import import_module
+from typing import Any, Final
+
+__version__ = "0.1.0"
+
+_MODULE_OF: Final = {
+    "WrinkleError": "errors",
+    "InputError": "errors",
+    "JobError": "errors",
+    "CadError": "errors",
+    "ExportError": "errors",
+}
+
+__all__ = ["__version__", *_MODULE_OF]  # noqa: PLE0604 - names are resolved by __getattr__
+
+
+def __getattr__(name: str) -> Any:  # noqa: ANN401 - whatever the module exports
+    if name not in _MODULE_OF:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    value = getattr(import_module(f"{__name__}.{_MODULE_OF[name]}"), name)
+    globals()[name] = value
+    return value
+
+
+def __dir__() -> list[str]:
+    return sorted(__all__)

@@ -1,0 +1,1 @@
+"""The ring of CAD around the mathematics: the only folder that imports OCP or build123d."""

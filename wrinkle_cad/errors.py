@@ -1,0 +1,56 @@
+"""Every error class of the package.
+
+A message is one line: what - what was found, with its unit - the limit - what to do.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+
+class WrinkleError(Exception):
+    """Base of every error that this package raises on purpose."""
+
+
+class InputError(WrinkleError, ValueError):
+    """Something handed in cannot be used: a curve, an array, a file, an option."""
+
+
+class JobError(InputError):
+    """The settings of a job contradict each other or do not fit the input file."""
+
+
+class CadError(WrinkleError):
+    """The CAD kernel could not do a step.
+
+    Args:
+        step: what was being done, in words a user knows ("sew the strip to the body").
+        message: what was found, the limit, what to do.
+    """
+
+    def __init__(self, step: str, message: str) -> None:
+        super().__init__(f"{step} - {message}")
+        self.step = step
+        self.message = message
+
+    def __reduce__(self) -> tuple[type[CadError], tuple[str, str]]:
+        return type(self), (self.step, self.message)
+
+
+class ExportError(WrinkleError):
+    """A file could not be written; what stood there before is untouched.
+
+    Args:
+        path: the file that was to be written.
+        format: its format ("STEP", "STL", "DXF", ...).
+        message: what was found, what to do.
+    """
+
+    def __init__(self, path: Path, format: str, message: str) -> None:  # noqa: A002 - the field's word
+        super().__init__(f"write {format} {path.name} - {message}")
+        self.path = path
+        self.format = format
+        self.message = message
+
+    def __reduce__(self) -> tuple[type[ExportError], tuple[Path, str, str]]:
+        return type(self), (self.path, self.format, self.message)

@@ -1,0 +1,1 @@
+"""The flat pattern: what goes to the cutter; no CAD."""

@@ -1,0 +1,1 @@
+"""The mathematics of a strip: arrays in, frozen results out; no CAD."""
