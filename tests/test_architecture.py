@@ -17,17 +17,20 @@ MODULES = sorted(PACKAGE.rglob("*.py"))
 LAYER = {
     "errors": 0,
     "settings": 0,
+    "findings": 0,
+    "atomic": 0,
     "strip": 1,
     "pattern": 2,
     "cad": 3,
-    "wrinkle": 4,
     "report": 4,
-    "job": 5,
-    "workflow": 6,
-    "batch": 6,
-    "doctor": 6,
-    "cli": 7,
-    "__main__": 8,
+    "wrinkle": 5,
+    "job": 6,
+    "outcome": 6,
+    "workflow": 7,
+    "batch": 8,
+    "doctor": 8,
+    "cli": 9,
+    "__main__": 10,
 }
 CAD_PACKAGES = {"OCP", "build123d", "cadquery"}
 STRIP_PACKAGES = {"numpy", "numba", "wrinkle_cad"}
