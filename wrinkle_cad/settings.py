@@ -29,6 +29,15 @@ ENERGY: Final = "hinge"
 SURFACE: Final = "cones"
 STEP_SCHEMA: Final = "AP214"
 
+CONFUSION: Final = 1e-7
+"""mm; points nearer than this are one point to the CAD kernel (its own fixed constant)."""
+
+LENGTH_ERROR: Final = 1e-9
+"""mm; how exactly the CAD kernel integrates the length of an edge."""
+
+AREA_RELATIVE_ERROR: Final = 1e-9
+"""How exactly the CAD kernel integrates the area of a face; its own default is some 1e-5."""
+
 
 def planarity_from(tolerance: float) -> float:
     """Returns the planarity in mm that fits a chord tolerance in mm."""
