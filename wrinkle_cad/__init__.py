@@ -8,7 +8,9 @@ from __future__ import annotations
 from importlib import import_module
 from typing import Any, Final
 
-__version__ = "0.1.0"
+from .settings import VERSION
+
+__version__ = VERSION
 
 _MODULE_OF: Final = {
     "WrinkleError": "errors",

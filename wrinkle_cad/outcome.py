@@ -46,3 +46,5 @@ class JobFailed:
     """One line: what - what was found, with its unit - the limit - what to do."""
     seconds: Mapping[str, float] = field(default_factory=dict)
     """Wall-clock seconds by phase."""
+    trace: str = ""
+    """The traceback, for a log or --debug."""

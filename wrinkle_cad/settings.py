@@ -8,6 +8,8 @@ from __future__ import annotations
 
 from typing import Final
 
+VERSION: Final = "0.1.0"
+
 TOLERANCE: Final = 0.05
 """mm; how far a chord may lie from its curve when the user says nothing."""
 

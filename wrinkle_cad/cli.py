@@ -1,0 +1,213 @@
+"""The command line: arguments, progress, messages, exit codes; nothing else.
+
+Exit codes: 0 done, 1 a job failed or, with --strict, a limit was missed, 2 wrong usage,
+130 interrupted.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import os
+import sys
+import traceback
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Final
+
+from . import settings
+from .errors import InputError, WrinkleError
+
+if TYPE_CHECKING:
+    from .outcome import JobDone
+
+DONE: Final = 0
+FAILED: Final = 1
+INTERRUPTED: Final = 130
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Runs the command line and returns its exit code."""
+    given = _parser().parse_args(arguments)
+    try:
+        code: int = given.command(given)
+    except KeyboardInterrupt:
+        print("interrupted - nothing half-written", file=sys.stderr)
+        return INTERRUPTED
+    except BrokenPipeError:
+        # The reader of our output went away (`| head`); Python would complain once more at exit.
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return FAILED
+    except WrinkleError as error:
+        if given.debug:
+            traceback.print_exc()
+        print(f"wrinkle-cad: {error}", file=sys.stderr)
+        return FAILED
+    return code
+
+
+def _parser() -> argparse.ArgumentParser:
+    parser = argparse.ArgumentParser(
+        prog="wrinkle-cad",
+        description="Finds the most developable strip between two curves; writes STEP, STL, DXF.",
+    )
+    parser.add_argument("--version", action=_Version, nargs=0, help="print the versions and stop")
+    parser.set_defaults(debug=False)
+    commands = parser.add_subparsers(required=True, metavar="COMMAND")
+    _add_run(commands)
+    _add_inspect(commands)
+    _add_doctor(commands)
+    return parser
+
+
+def _add_run(commands: Any) -> None:  # noqa: ANN401 - argparse keeps the class private
+    run = commands.add_parser("run", help="make the strip of one file")
+    run.set_defaults(command=_run)
+    add_job_arguments(run)
+    run.add_argument("--job", type=Path, metavar="FILE.toml", help="settings; flags go before it")
+    run.add_argument("--name", metavar="STEM", help="stem of the outputs (default: the input's)")
+    run.add_argument("input", type=Path, metavar="INPUT", help="STEP, IGES or BREP file")
+    run.add_argument("--quiet", action="store_true", help="print failures only")
+    _add_debug(run)
+
+
+def add_job_arguments(parser: argparse.ArgumentParser) -> None:
+    """Adds the flags that one job and a batch of jobs share."""
+    add = parser.add_argument
+    add("-o", "--output-dir", type=Path, metavar="DIR", help="folder for the outputs (out)")
+    add("--p", metavar="NAME|INDEX", help="directrix P, as inspect prints it")
+    add("--q", metavar="NAME|INDEX", help="directrix Q")
+    add("--upper", metavar="NAME|INDEX", help="the upper surface")
+    add("--unit", choices=("mm", "cm", "m", "inch", "ft"), help="unit of a file that states none")
+    add(
+        "--tolerance",
+        type=float,
+        metavar="MM",
+        help=f"largest distance of a chord from its curve in mm ({settings.TOLERANCE:g})",
+    )
+    add("--max-chord", type=float, metavar="MM", help="longest chord in mm (unlimited)")
+    add("--planarity", type=float, metavar="MM", help="slack of the convexity test in mm (derived)")
+    add("--surface", choices=("cones", "facets"), help=f"kind of faces ({settings.SURFACE})")
+    add("--criteria", type=_criteria, metavar="A,B", help="what to minimise (invalid,bending)")
+    add("--search", choices=("global", "local"), help=f"search ({settings.SEARCH})")
+    add("--energy", choices=("hinge", "paper"), help=f"bending energy ({settings.ENERGY})")
+    add("--step-schema", choices=("AP214", "AP242"), help=f"({settings.STEP_SCHEMA})")
+    add("--rulings", action="store_true", default=None, help="draw the rulings in the pattern")
+
+
+def _add_inspect(commands: Any) -> None:  # noqa: ANN401
+    inspect = commands.add_parser("inspect", help="list the shapes of a file")
+    inspect.set_defaults(command=_inspect)
+    inspect.add_argument("input", type=Path, metavar="INPUT", help="STEP, IGES or BREP file")
+    for flag in ("--p", "--q", "--upper"):
+        inspect.add_argument(flag, metavar="NAME|INDEX", help="as for run: shows what it takes")
+    inspect.add_argument("--unit", choices=("mm", "cm", "m", "inch", "ft"))
+    inspect.add_argument("--json", action="store_true", help="print one JSON value")
+    _add_debug(inspect)
+
+
+def _add_doctor(commands: Any) -> None:  # noqa: ANN401
+    doctor = commands.add_parser("doctor", help="say what is wrong with this installation")
+    doctor.set_defaults(command=_doctor)
+    _add_debug(doctor)
+
+
+def _add_debug(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("--debug", action="store_true", help="print the traceback of a failure")
+
+
+class _Version(argparse.Action):
+    def __call__(self, parser: argparse.ArgumentParser, *_: object) -> None:
+        from .versions import installed_versions
+
+        for name, version in installed_versions().items():
+            print(f"{name} {version}")
+        parser.exit()
+
+
+def _criteria(text: str) -> tuple[str, ...]:
+    return tuple(part.strip() for part in text.split(",") if part.strip())
+
+
+def _epoch() -> int | None:
+    text = os.environ.get("SOURCE_DATE_EPOCH")
+    if text is None or text == "":
+        return None
+    if not text.isdigit():
+        raise InputError(f"SOURCE_DATE_EPOCH - {text!r} - whole seconds since 1970 - correct it")
+    return int(text)
+
+
+def job_keywords(given: argparse.Namespace) -> dict[str, Any]:
+    """The settings of a job among the arguments given; None where a flag was not given."""
+    from dataclasses import fields
+
+    from .job import Job
+
+    names = {field.name for field in fields(Job)} - {"input", "source_date_epoch"}
+    keywords = {name: value for name, value in vars(given).items() if name in names}
+    return {**keywords, "source_date_epoch": _epoch()}
+
+
+def _run(given: argparse.Namespace) -> int:
+    from .job import make_job
+    from .outcome import JobFailed
+    from .screen import progress_on_screen
+    from .workflow import run_job
+
+    job = make_job(given.input, job_keywords(given), given.job)
+    with progress_on_screen(is_wanted=not given.quiet) as progress:
+        outcome = run_job(job, progress=progress)
+    if isinstance(outcome, JobFailed):
+        if given.debug:
+            print(outcome.trace, file=sys.stderr)
+        print(f"wrinkle-cad: {outcome.message}", file=sys.stderr)
+        return FAILED
+    if not given.quiet:
+        _print_done(outcome)
+    return FAILED if job_misses_limits(outcome) else DONE
+
+
+def job_misses_limits(outcome: JobDone) -> bool:
+    """Whether a limit was missed that the job was told to fail by."""
+    return bool(outcome.missed_limits) and getattr(outcome.job, "strict", False)
+
+
+def _print_done(outcome: JobDone) -> None:
+    from .screen import one_line
+
+    for strip in outcome.summary["strips"]:
+        print(
+            f"{one_line(strip['name'])}: {strip['interior_bridges']} bridges, "
+            f"{strip['invalid_bridges']} not locally convex "
+            f"({strip['inflection_bridges']} of them inflections), "
+            f"largest fold {strip['max_fold_deg']:.2f} deg, "
+            f"area {strip['area_3d_mm2']:.1f} mm2, flat {strip['area_pattern_mm2']:.1f} mm2"
+        )
+    for finding in outcome.findings:
+        print(f"{finding.severity}: {one_line(finding.message)}")
+    for line in outcome.missed_limits:
+        print(f"FAIL: {one_line(line)}")
+    for path in outcome.outputs:
+        print(path)
+
+
+def _inspect(given: argparse.Namespace) -> int:
+    from .inspection import inspect_file
+    from .screen import print_inspection
+
+    inspection = inspect_file(given.input, unit=given.unit, p=given.p, q=given.q, upper=given.upper)
+    if given.json:
+        print(json.dumps(inspection.as_json(), ensure_ascii=False, indent=2))
+    else:
+        print_inspection(inspection)
+    return DONE
+
+
+def _doctor(_: argparse.Namespace) -> int:
+    from .doctor import diagnose
+
+    diagnoses = diagnose(os.environ)
+    for diagnosis in diagnoses:
+        print(f"{'ok     ' if diagnosis.is_ok else 'PROBLEM'}  {diagnosis.name}: {diagnosis.message}")
+    return DONE if all(diagnosis.is_ok for diagnosis in diagnoses) else FAILED

@@ -1,0 +1,72 @@
+"""What a person sees on a terminal: progress, tables, one safe line."""
+
+from __future__ import annotations
+
+import sys
+import unicodedata
+from collections.abc import Iterator
+from contextlib import contextmanager
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from .inspection import Inspection
+    from .outcome import Progress
+
+
+def one_line(text: str) -> str:
+    """The text without line breaks and control characters: names come from files."""
+    return "".join("?" if unicodedata.category(c) in ("Cc", "Cf", "Zl", "Zp") else c for c in text)
+
+
+@contextmanager
+def progress_on_screen(*, is_wanted: bool) -> Iterator[Progress | None]:
+    """Shows phase, counter and seconds on stderr while a job runs; nothing off a terminal."""
+    if not (is_wanted and sys.stderr.isatty()):
+        yield None
+        return
+    from rich.console import Console
+    from rich.progress import (
+        BarColumn,
+        MofNCompleteColumn,
+        Progress,
+        SpinnerColumn,
+        TextColumn,
+        TimeElapsedColumn,
+    )
+
+    columns = (
+        SpinnerColumn(),
+        TextColumn("{task.description}"),
+        BarColumn(),
+        MofNCompleteColumn(),
+        TimeElapsedColumn(),
+    )
+    with Progress(*columns, console=Console(stderr=True), transient=True) as bar:
+        task = bar.add_task("start", total=None)
+
+        def show(phase: str, done: int, total: int) -> None:
+            bar.update(task, description=one_line(phase), completed=done, total=total)
+
+        yield show
+
+
+def print_inspection(inspection: Inspection) -> None:
+    """Prints the shapes of a file as a table, then which of them would be taken, and why."""
+    from rich.console import Console
+    from rich.table import Table
+    from rich.text import Text
+
+    console = Console(soft_wrap=not sys.stdout.isatty(), highlight=False)
+    console.print(Text(f"{one_line(inspection.file)}: {inspection.format}, {inspection.unit}"))
+    table = Table("index", "name", "kind", "measure", "taken as")
+    for row in inspection.rows:
+        table.add_row(
+            str(row.index),
+            Text(one_line(row.name)),
+            row.kind,
+            f"{row.measure:.3f} {row.measure_unit}",
+            Text(one_line(row.taken_as)),
+        )
+    console.print(table)
+    for reason in inspection.reasons:
+        console.print(Text(one_line(reason)))
