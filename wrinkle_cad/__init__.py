@@ -20,10 +20,10 @@ _MODULE_OF: Final = {
     "ExportError": "errors",
 }
 
-__all__ = ["__version__", *_MODULE_OF]  # noqa: PLE0604 - names are resolved by __getattr__
+__all__ = ["__version__", *_MODULE_OF]
 
 
-def __getattr__(name: str) -> Any:  # noqa: ANN401 - whatever the module exports
+def __getattr__(name: str) -> Any:
     if name not in _MODULE_OF:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
     value = getattr(import_module(f"{__name__}.{_MODULE_OF[name]}"), name)

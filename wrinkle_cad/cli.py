@@ -29,6 +29,8 @@ INTERRUPTED: Final = 130
 def main(arguments: Sequence[str] | None = None) -> int:
     """Runs the command line and returns its exit code."""
     given = _parser().parse_args(arguments)
+    if not given.debug:
+        sys.excepthook = _report_defect
     try:
         code: int = given.command(given)
     except KeyboardInterrupt:
@@ -46,6 +48,16 @@ def main(arguments: Sequence[str] | None = None) -> int:
     return code
 
 
+def _report_defect(kind: type[BaseException], error: BaseException, _: object) -> None:
+    """One line for what no code foresaw; Python then exits with code 1."""
+    said = " ".join(str(error).split()) or "no message"
+    print(
+        f"wrinkle-cad: defect in the program - {kind.__name__}: {said} - run again with --debug"
+        " and report what it prints",
+        file=sys.stderr,
+    )
+
+
 def _parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(
         prog="wrinkle-cad",
@@ -60,7 +72,7 @@ def _parser() -> argparse.ArgumentParser:
     return parser
 
 
-def _add_run(commands: Any) -> None:  # noqa: ANN401 - argparse keeps the class private
+def _add_run(commands: Any) -> None:
     run = commands.add_parser("run", help="make the strip of one file")
     run.set_defaults(command=_run)
     add_job_arguments(run)
@@ -95,7 +107,7 @@ def add_job_arguments(parser: argparse.ArgumentParser) -> None:
     add("--rulings", action="store_true", default=None, help="draw the rulings in the pattern")
 
 
-def _add_inspect(commands: Any) -> None:  # noqa: ANN401
+def _add_inspect(commands: Any) -> None:
     inspect = commands.add_parser("inspect", help="list the shapes of a file")
     inspect.set_defaults(command=_inspect)
     inspect.add_argument("input", type=Path, metavar="INPUT", help="STEP, IGES or BREP file")
@@ -106,7 +118,7 @@ def _add_inspect(commands: Any) -> None:  # noqa: ANN401
     _add_debug(inspect)
 
 
-def _add_doctor(commands: Any) -> None:  # noqa: ANN401
+def _add_doctor(commands: Any) -> None:
     doctor = commands.add_parser("doctor", help="say what is wrong with this installation")
     doctor.set_defaults(command=_doctor)
     _add_debug(doctor)
@@ -209,5 +221,7 @@ def _doctor(_: argparse.Namespace) -> int:
 
     diagnoses = diagnose(os.environ)
     for diagnosis in diagnoses:
-        print(f"{'ok     ' if diagnosis.is_ok else 'PROBLEM'}  {diagnosis.name}: {diagnosis.message}")
+        print(
+            f"{'ok     ' if diagnosis.is_ok else 'PROBLEM'}  {diagnosis.name}: {diagnosis.message}"
+        )
     return DONE if all(diagnosis.is_ok for diagnosis in diagnoses) else FAILED

@@ -69,7 +69,9 @@ def diagnose_library(name: str, package: str, load: Callable[[str], object]) -> 
     try:
         load(name)
     except OSError:
-        advice = f"missing, the CAD kernel needs it - install it (Debian: apt-get install {package})"
+        advice = (
+            f"missing, the CAD kernel needs it - install it (Debian: apt-get install {package})"
+        )
         return Diagnosis(name, False, advice)
     return Diagnosis(name, True, "found")
 

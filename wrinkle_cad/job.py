@@ -116,7 +116,9 @@ def read_job_toml(path: Path) -> dict[str, Any]:
     try:
         table = tomllib.loads(path.read_text(encoding="utf-8"))
     except (OSError, UnicodeDecodeError, tomllib.TOMLDecodeError) as error:
-        raise JobError(f"{path.name} - cannot be read as TOML: {error} - correct the file") from error
+        raise JobError(
+            f"{path.name} - cannot be read as TOML: {error} - correct the file"
+        ) from error
     _check_known(table, path.name)
     for field in _PATH_FIELDS:
         if field in table:
@@ -128,7 +130,9 @@ def _check_known(table: Mapping[str, Any], source: str) -> None:
     known = {field.name for field in fields(Job)}
     for key in table:
         if key not in known:
-            raise JobError(f"{source} - unknown setting {key!r} - known: {', '.join(sorted(known))}")
+            raise JobError(
+                f"{source} - unknown setting {key!r} - known: {', '.join(sorted(known))}"
+            )
 
 
 def _stem_of(path: Path) -> str:
@@ -140,15 +144,17 @@ def _stem_of(path: Path) -> str:
 
 
 def _check_name(name: str) -> None:
-    if name in ("", ".", "..") or any(c in '/\\:\0' or ord(c) < 32 for c in name):
-        raise JobError(f"name - {name!r} - the stem of a file, without folders or control characters")
+    if name in ("", ".", "..") or any(c in "/\\:\0" or ord(c) < 32 for c in name):
+        raise JobError(
+            f"name - {name!r} - the stem of a file, without folders or control characters"
+        )
     if len(name.encode()) > _NAME_LIMIT:
         raise JobError(
             f"name - {len(name.encode())} bytes - at most {_NAME_LIMIT} - give a shorter --name"
         )
 
 
-def _check_number(field: str, value: Any, *, may_be_zero: bool) -> None:  # noqa: ANN401
+def _check_number(field: str, value: Any, *, may_be_zero: bool) -> None:
     if value is None:
         return
     if isinstance(value, bool) or not isinstance(value, int | float) or not math.isfinite(value):

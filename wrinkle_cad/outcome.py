@@ -29,7 +29,7 @@ class JobDone:
     seconds: Mapping[str, float] = field(default_factory=dict)
     """Wall-clock seconds by phase."""
     missed_limits: tuple[str, ...] = ()
-    """One line for each limit given that the result misses; the outputs are written all the same."""
+    """One line for each limit that the result misses; the outputs are written all the same."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

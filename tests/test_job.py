@@ -1,0 +1,78 @@
+from __future__ import annotations
+
+import math
+from pathlib import Path
+
+import pytest
+
+from wrinkle_cad.errors import JobError
+from wrinkle_cad.job import Job, make_job, read_job_toml
+
+
+def test_the_outputs_are_named_after_the_input_without_its_suffixes() -> None:
+    assert Job(input=Path("a/shoe 42.step")).name == "shoe 42"
+    assert Job(input=Path("shoe.stp.gz")).name == "shoe"
+    assert Job(input=Path("v1.2.IGES")).name == "v1.2"
+    assert Job(input=Path("no_suffix")).name == "no_suffix"
+
+
+def test_keywords_go_before_the_file_and_the_file_before_the_defaults(tmp_path: Path) -> None:
+    toml = tmp_path / "job.toml"
+    toml.write_text('tolerance = 0.2\nsurface = "facets"\n')
+    job = make_job(Path("x.step"), {"tolerance": 0.1, "surface": None}, toml)
+    assert job.tolerance == 0.1
+    assert job.surface == "facets"
+    assert job.search == "global"
+
+
+def test_paths_in_a_job_file_start_at_its_folder(tmp_path: Path) -> None:
+    (tmp_path / "job.toml").write_text('output_dir = "made"\n')
+    assert read_job_toml(tmp_path / "job.toml")["output_dir"] == tmp_path / "made"
+
+
+def test_criteria_from_a_job_file_become_a_tuple(tmp_path: Path) -> None:
+    (tmp_path / "job.toml").write_text('criteria = ["area"]\n')
+    assert make_job(Path("x.step"), None, tmp_path / "job.toml").criteria == ("area",)
+
+
+@pytest.mark.parametrize(
+    ("keywords", "named"),
+    [
+        ({"tolerance": 0.0}, "tolerance"),
+        ({"tolerance": -1.0}, "tolerance"),
+        ({"tolerance": math.nan}, "tolerance"),
+        ({"tolerance": math.inf}, "tolerance"),
+        ({"tolerance": "0.1"}, "tolerance"),
+        ({"tolerance": True}, "tolerance"),
+        ({"max_chord": 0}, "max_chord"),
+        ({"surface": "nurbs"}, "surface"),
+        ({"search": "best"}, "search"),
+        ({"energy": "none"}, "energy"),
+        ({"step_schema": "AP203"}, "step_schema"),
+        ({"unit": "furlong"}, "unit"),
+        ({"name": "../x"}, "name"),
+        ({"name": ".."}, "name"),
+        ({"name": "a\nb"}, "name"),
+        ({"name": "é" * 101}, "name"),
+        ({"colour": "red"}, "colour"),
+    ],
+)
+def test_a_setting_out_of_its_range_is_named(keywords: dict[str, object], named: str) -> None:
+    with pytest.raises(JobError, match=named) as caught:
+        make_job(Path("x.step"), keywords)
+    assert "\n" not in str(caught.value)
+
+
+@pytest.mark.parametrize(
+    "text", ["tolerance = ", "colour = 1\n", "\ud800".encode("utf-8", "replace")]
+)
+def test_a_job_file_that_cannot_be_used_is_named(tmp_path: Path, text: str | bytes) -> None:
+    path = tmp_path / "bad.toml"
+    path.write_bytes(text if isinstance(text, bytes) else text.encode())
+    with pytest.raises(JobError, match=r"bad\.toml"):
+        read_job_toml(path)
+
+
+def test_a_job_file_that_is_missing_is_named(tmp_path: Path) -> None:
+    with pytest.raises(JobError, match=r"gone\.toml"):
+        read_job_toml(tmp_path / "gone.toml")
