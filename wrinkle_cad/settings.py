@@ -20,15 +20,50 @@ Near the chord tolerance itself every bridge would count as valid; at zero, roun
 bridges of exact developables.
 """
 
+PLANARITY_FLOOR_PER_COORDINATE: Final = 1e-13
+"""Planarity is never below this share of the largest coordinate: round-off, times the ratio of
+neighbouring spacings that a strip may have."""
+
+ROUND_OFF_PER_COORDINATE: Final = 1.5e-14
+"""A distance below this share of the largest coordinate is round-off (64 units in the last place)."""
+
+LARGEST_COORDINATE: Final = 1e9
+"""mm; beyond it squares and products of lengths are no longer safe, and the unit is surely wrong."""
+
+STEEPEST_HALF_FOLD: Final = 1e6
+"""Tangent of half a fold angle from which a bridge counts as folded back on itself (180 degrees)."""
+
 SHORTEST_SEGMENT_PER_LENGTH: Final = 1e-6
 """No sampled segment is shorter than this share of its curve's length."""
+
+SURROGATE_PER_TOLERANCE: Final = 1e-3
+"""While chords are being placed, polynomials stand for the curve to this share of the tolerance."""
+
+SURROGATE_PER_SIZE: Final = 1e-4
+"""... and to this share of the curve's extent, where the tolerance is coarse against the curve."""
+
+TABLE_SAG_PER_TOLERANCE: Final = 3e-3
+"""Distances to a chord are measured at points so close that the curve bulges no more than this
+share of the tolerance between them."""
+
+SAMPLING_MARGINS: Final = (0.995, 0.98, 0.95, 0.9)
+"""Shares of the tolerance that are tried in turn until an independent sampling confirms the chords.
+
+Segments grow as the square root: 0.995 costs a quarter percent of them.
+"""
+
+FINEST_TOLERANCE_PER_SIZE: Final = 1e-11
+"""A chord tolerance below this share of the largest coordinate would measure round-off."""
 
 CRITERIA: Final = ("invalid", "bending")
 """GODT+GMBT: as many locally convex bridges as possible, then least bending."""
 
 SEARCH: Final = "global"
 ENERGY: Final = "hinge"
+SURFACES: Final = ("cones", "facets")
 SURFACE: Final = "cones"
+STRIP_COLOR: Final = (0.80, 0.52, 0.25)
+"""Leather: red, green, blue from 0 to 1."""
 STEP_SCHEMA: Final = "AP214"
 
 CONFUSION: Final = 1e-7
@@ -39,6 +74,103 @@ LENGTH_ERROR: Final = 1e-9
 
 AREA_RELATIVE_ERROR: Final = 1e-9
 """How exactly the CAD kernel integrates the area of a face; its own default is some 1e-5."""
+
+PATTERN_CORNER: Final = 0.5
+"""rad; the outline of a pattern turns sharper than this at a corner, else it is a curve."""
+
+MITRE_LIMIT: Final = 2.0
+"""A mitred corner of the seam allowance reaches at most this many widths from the sew line."""
+
+SEAM_ALLOWANCE: Final = (0.0, 0.0, 0.0, 0.0)
+"""mm; on P, Q, the start and the end."""
+
+NOTCH_DEPTH: Final = 3.0
+"""mm; how far a notch is cut in when the allowance is wide enough for it."""
+
+NOTCH_DEPTH_PER_ALLOWANCE: Final = 0.6
+"""A notch never eats more than this share of the seam allowance."""
+
+NOTCH_WIDTH: Final = 2.0
+"""mm; opening of a V, U, T or castle notch at the cut line."""
+
+NOTCH_CLEARANCE: Final = 3.0
+"""mm of seam between a notch and the next corner, at least."""
+
+TEXT_HEIGHT: Final = 4.0
+"""mm; largest height of the texts in a pattern piece."""
+
+TEXT_HEIGHT_MIN: Final = 1.0
+"""mm; texts smaller than this cannot be read, so narrow pieces let their text run over the edge."""
+
+FLAT_FOLD: Final = 1e-7
+"""rad; rulings folded by less are neither mountain nor valley."""
+
+PIECE_GAP: Final = 10.0
+"""mm between the pieces of one drawing."""
+
+PIECE_SIZE: Final = "M"
+"""Size of a piece when the user says nothing; pattern CAD refuses a piece without one."""
+
+PATTERN_OVERLAP: Final = "split"
+"""A pattern that overlaps itself is cut at bridges into as few pieces as possible."""
+
+DXF_PROFILE: Final = "cutter"
+DXF_VERSION: Final = "R2000"
+
+TEST_SQUARE: Final = 100.0
+"""mm; side of the square that shows whether a machine read the scale right."""
+
+DXF_DECIMALS: Final = 6
+"""Decimals of a coordinate in mm in a pattern file."""
+
+
+SPAN_SLACK: Final = 1e-9
+"""A bridge whose end lies this share of the rail beyond a pattern piece still belongs to it."""
+
+MATRIX_OVERVIEW: Final = 1024
+"""Pixels on the longer side of the page's overview of a validity matrix, at most."""
+
+MATRIX_TILE: Final = 500
+"""Bridges on a side of one tile of a validity matrix in the page."""
+
+MATRIX_TILE_BYTES: Final = 1_000_000
+"""Base64 bytes of all tiles of one validity matrix; above, only those at the path are kept."""
+
+RAIL_GAP: Final = 1e-3
+"""mm; edges of one rail may end this far apart; their ends are then moved to the middle."""
+
+RAIL_GAP_PER_SIZE: Final = 1e-4
+"""... but never further than this share of the largest edge: rails may be microns long."""
+
+RAIL_JUMP: Final = 1e-6
+"""Share of the speed by which a curve's derivative must jump at a knot to count as not C1.
+
+Below it is what files lose by writing poles with seven or more digits.
+"""
+
+RAIL_LENGTH_MIN: Final = 1e-6
+"""mm; a rail must be longer than this."""
+
+RAILS_APART_PER_LENGTH: Final = 1e-6
+"""Rails that lie nearer to one another than this share of their length are the same curve."""
+
+FILE_SIZE_LIMIT: Final = 256 * 2**20
+"""Bytes; the largest file, packed or unpacked, that is handed to the CAD kernel."""
+
+SNIFFED_BYTES: Final = 2**16
+"""How far into a file its format is looked for; comments may stand before the mark."""
+
+LARGEST_COORDINATE: Final = 1e8
+"""mm; a shape further out than 100 km is a damaged number, not a shoe or a hull."""
+
+JOIN_GAP: Final = 1e-3
+"""mm; loose edges of one named curve in a STEP file join where their ends are this near."""
+
+FILE_UNIT: Final = "mm"
+"""The unit of a file that declares none."""
+
+MESH_ANGLE: Final = 0.2
+"""rad; how far the normals of neighbouring triangles of a mesh may differ on a curved face."""
 
 
 def planarity_from(tolerance: float) -> float:
