@@ -1,0 +1,289 @@
+"""Chords as long as a tolerance allows, placed along a curve that is given as cells.
+
+From each vertex the farthest point of the curve is sought whose chord has every curve point
+between within the tolerance. That a chord fails does not mean that no longer one succeeds (a wave
+flatter than the tolerance), so the search goes on until no chord can succeed any more: seen from
+the vertex, every curve point farther off than the tolerance confines the chord's direction to a
+cone, and two of these cones have become disjoint. Then the same number of chords is spread evenly,
+with the smallest share of the tolerance that still needs no more of them.
+"""
+
+from __future__ import annotations
+
+from typing import Final
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from .chebyshev import FloatArray, point_in_cell, point_in_cells
+
+IndexArray = NDArray[np.int64]
+
+BISECTIONS: Final = 10
+"""Table points stand about 1/14 of a chord apart: an end is found to 1e-4 of a chord."""
+EVENING_STEPS: Final = 6
+RETRIES: Final = (1.0, 0.98, 0.93, 0.85, 0.7, 0.5, 0.3)
+"""Shares of the tolerance's square root, tried until no chord comes out too short."""
+DEEPEST: Final = 48
+
+
+@njit(cache=True)
+def _gap2(
+    x: float, y: float, z: float, a: tuple[float, float, float], b: tuple[float, float, float]
+) -> float:
+    """Squared distance from a point to the segment a-b."""
+    ux, uy, uz = b[0] - a[0], b[1] - a[1], b[2] - a[2]
+    vx, vy, vz = x - a[0], y - a[1], z - a[2]
+    square = ux * ux + uy * uy + uz * uz
+    share = ux * vx + uy * vy + uz * vz
+    share = 0.0 if square == 0.0 else min(1.0, max(0.0, share / square))
+    vx, vy, vz = vx - share * ux, vy - share * uy, vz - share * uz
+    return vx * vx + vy * vy + vz * vz
+
+
+@njit(cache=True)
+def tabulate(
+    edges: FloatArray, coefficients: FloatArray, sag: float, spacing: float, most: int
+) -> tuple[FloatArray, FloatArray]:
+    """Points along the curve so close that it bulges at most ``sag`` between neighbours.
+
+    Args:
+        edges: (c + 1,) float64: the cells' parameters; each becomes a point of the table.
+        coefficients: (c, 17, 3) float64, mm.
+        sag: mm; largest distance from the curve midway to the segment between neighbours.
+        spacing: mm; largest distance between neighbours.
+        most: the table stops growing at so many points (then it is not complete).
+
+    Returns:
+        (k,) float64 parameters and (k, 3) float64 points in mm.
+    """
+    size = 1024
+    t = np.empty(size)
+    x = np.empty((size, 3))
+    ends = np.empty(DEEPEST + 2)
+    count = 0
+    for cell in range(len(edges) - 1):
+        low, stack = -1.0, 0
+        ends[0] = 1.0
+        a = point_in_cell(coefficients[cell], low)
+        while stack >= 0:
+            high = ends[stack]
+            b = point_in_cell(coefficients[cell], high)
+            m = point_in_cell(coefficients[cell], 0.5 * (low + high))
+            length2 = (b[0] - a[0]) ** 2 + (b[1] - a[1]) ** 2 + (b[2] - a[2]) ** 2
+            fine = _gap2(m[0], m[1], m[2], a, b) <= sag * sag and length2 <= spacing * spacing
+            if not fine and stack < DEEPEST:
+                stack += 1
+                ends[stack] = 0.5 * (low + high)
+                continue
+            if count + 2 > size:
+                if count >= most:
+                    return t[:count], x[:count]
+                size *= 2
+                grown_t = np.empty(size)
+                grown_t[:count] = t[:count]
+                grown_x = np.empty((size, 3))
+                grown_x[:count] = x[:count]
+                t, x = grown_t, grown_x
+            t[count] = edges[cell] + 0.5 * (low + 1.0) * (edges[cell + 1] - edges[cell])
+            x[count, 0], x[count, 1], x[count, 2] = a
+            count += 1
+            low, a = high, b
+            stack -= 1
+    t[count] = edges[-1]
+    x[count, 0], x[count, 1], x[count, 2] = point_in_cell(coefficients[-1], 1.0)
+    return t[: count + 1], x[: count + 1]
+
+
+@njit(cache=True)
+def _holds(
+    x: FloatArray,
+    first: int,
+    last: int,
+    a: tuple[float, float, float],
+    b: tuple[float, float, float],
+    limits: tuple[float, float, float],
+) -> bool:
+    """Whether the chord a-b is long and short enough and table points first..last are near it."""
+    tolerance, longest, shortest = limits
+    length2 = (b[0] - a[0]) ** 2 + (b[1] - a[1]) ** 2 + (b[2] - a[2]) ** 2
+    if length2 > longest * longest or length2 < shortest * shortest:
+        return False
+    square = tolerance * tolerance
+    for i in range(first, last + 1):  # noqa: SIM110 - numba compiles no generator
+        if _gap2(x[i, 0], x[i, 1], x[i, 2], a, b) > square:
+            return False
+    return True
+
+
+@njit(cache=True)
+def _horizon(
+    x: FloatArray,
+    first: int,
+    end: int,
+    a: tuple[float, float, float],
+    limits: tuple[float, float, float],
+    cones: FloatArray,
+) -> int:
+    """The last table point up to ``end`` that a chord from ``a`` might still reach.
+
+    ``cones`` is scratch (k, 5): direction, sine and cosine of the half angle.
+    """
+    tolerance, longest, _ = limits
+    count = 0
+    for i in range(first, end + 1):
+        vx, vy, vz = x[i, 0] - a[0], x[i, 1] - a[1], x[i, 2] - a[2]
+        distance = np.sqrt(vx * vx + vy * vy + vz * vz)
+        if distance > longest + tolerance:
+            return i
+        if distance <= tolerance:
+            continue
+        vx, vy, vz = vx / distance, vy / distance, vz / distance
+        sine = tolerance / distance
+        cosine = np.sqrt(1.0 - sine * sine)
+        for j in range(count):
+            dot = cones[j, 0] * vx + cones[j, 1] * vy + cones[j, 2] * vz
+            if dot < cones[j, 4] * cosine - cones[j, 3] * sine:
+                return i
+        cones[count, 0], cones[count, 1], cones[count, 2] = vx, vy, vz
+        cones[count, 3], cones[count, 4] = sine, cosine
+        count += 1
+    return end
+
+
+@njit(cache=True)
+def _refine(
+    curve: tuple[FloatArray, FloatArray, FloatArray, FloatArray],
+    first: int,
+    k: int,
+    low: float,
+    a: tuple[float, float, float],
+    limits: tuple[float, float, float],
+) -> tuple[float, bool]:
+    """Moves a chord's end from ``low`` (table point k or before it) towards table point k + 1."""
+    t, x, edges, coefficients = curve
+    high = t[k + 1]
+    found = False
+    for _ in range(BISECTIONS):
+        middle = 0.5 * (low + high)
+        if _holds(x, first, k, a, point_in_cells(edges, coefficients, middle), limits):
+            low, found = middle, True
+        else:
+            high = middle
+    return low, found
+
+
+@njit(cache=True)
+def _greedy(
+    curve: tuple[FloatArray, FloatArray, FloatArray, FloatArray],
+    start: int,
+    end: int,
+    limits: tuple[float, float, float],
+    out: FloatArray,
+    cones: FloatArray,
+) -> int:
+    """Writes the parameters of the vertices after table point ``start`` up to ``end``.
+
+    Returns how many chords there are, or -1 if some chord is bound to be too short.
+    """
+    t, x, edges, coefficients = curve
+    goal = (x[end, 0], x[end, 1], x[end, 2])
+    a = (x[start, 0], x[start, 1], x[start, 2])
+    parameter = t[start]
+    first = start + 1
+    for count in range(len(out)):
+        if _holds(x, first, end - 1, a, goal, limits):
+            out[count] = t[end]
+            return count + 1
+        k = min(_horizon(x, first, end, a, limits, cones), end - 1)
+        while k >= first and not _holds(x, first, k - 1, a, (x[k, 0], x[k, 1], x[k, 2]), limits):
+            k -= 1
+        low = t[k] if k >= first else parameter
+        low, found = _refine(curve, first, k, low, a, limits)
+        if k < first and not found:
+            return -1
+        out[count] = parameter = low
+        a = point_in_cells(edges, coefficients, parameter)
+        first = k + 1
+        if t[first] <= parameter:
+            first += 1
+    return -1
+
+
+@njit(cache=True)
+def _scaled(limits: tuple[float, float, float], share: float) -> tuple[float, float, float]:
+    """Limits for chords ``share`` times as long: the bulge of a chord grows as its square."""
+    return limits[0] * share * share, limits[1] * share, limits[2]
+
+
+@njit(cache=True)
+def _even_piece(
+    curve: tuple[FloatArray, FloatArray, FloatArray, FloatArray],
+    start: int,
+    end: int,
+    limits: tuple[float, float, float],
+    best: FloatArray,
+    trial: FloatArray,
+    cones: FloatArray,
+) -> int:
+    """Vertices of one smooth piece into ``best``; the number of chords, or -1."""
+    count = -1
+    good = 1.0
+    for share in RETRIES:
+        count = _greedy(curve, start, end, _scaled(limits, share), best, cones)
+        good = share
+        if count > 0:
+            break
+    if count < 2:
+        return count
+    bad = good * (count - 1.5) / count
+    for _ in range(EVENING_STEPS):
+        share = 0.5 * (good + bad)
+        needed = _greedy(curve, start, end, _scaled(limits, share), trial, cones)
+        if 0 < needed <= count:
+            best[:needed] = trial[:needed]
+            count = needed
+            good = share
+        else:
+            bad = share
+    return count
+
+
+@njit(cache=True)
+def place_chords(
+    t: FloatArray,
+    x: FloatArray,
+    edges: FloatArray,
+    coefficients: FloatArray,
+    corners: IndexArray,
+    limits: tuple[float, float, float],
+) -> tuple[FloatArray, int]:
+    """Places vertices on every smooth piece between corners.
+
+    Args:
+        t: (k,) float64: parameters of a table of curve points, as ``tabulate`` makes it.
+        x: (k, 3) float64, mm: its points.
+        edges: (c + 1,) float64: the cells.
+        coefficients: (c, 17, 3) float64, mm.
+        corners: (s + 1,) int64: table points that must be vertices, first and last included.
+        limits: mm; distance of the curve from a chord, longest chord (may be infinite), shortest.
+
+    Returns:
+        The vertices' parameters in order, and -1, or the piece (its index) that cannot be done
+        because a chord would have to be shorter than the shortest.
+    """
+    curve = (t, x, edges, coefficients)
+    out = np.empty(2 * len(t) + 16)
+    best = np.empty(2 * len(t) + 16)
+    trial = np.empty(2 * len(t) + 16)
+    cones = np.empty((len(t), 5))
+    out[0] = t[0]
+    filled = 1
+    for piece in range(len(corners) - 1):
+        count = _even_piece(curve, corners[piece], corners[piece + 1], limits, best, trial, cones)
+        if count < 0 or filled + count > len(out):
+            return out[:filled], piece
+        out[filled : filled + count] = best[:count]
+        filled += count
+    return out[:filled], -1

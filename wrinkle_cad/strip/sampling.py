@@ -1,0 +1,219 @@
+"""A parametric curve becomes vertices whose chords stay within a tolerance of it."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+
+from wrinkle_cad.errors import InputError
+from wrinkle_cad.settings import (
+    FINEST_TOLERANCE_PER_SIZE,
+    SAMPLING_MARGINS,
+    SHORTEST_SEGMENT_PER_LENGTH,
+    SURROGATE_PER_SIZE,
+    SURROGATE_PER_TOLERANCE,
+    TABLE_SAG_PER_TOLERANCE,
+)
+
+from .chebyshev import Cells, FloatArray, PointAt, evaluate, fit_cells
+from .chords import IndexArray, place_chords, tabulate
+
+FIRST_CELLS: Final = 64
+"""A curve starts with so many cells of 17 points, whatever the number of its smooth pieces ..."""
+FIRST_CELLS_OF_PIECE: Final = 2
+"""... and each piece with at least so many."""
+TABLE_SHARE: Final = 256
+"""The table has at least so many points along a curve."""
+MOST_TABLE_POINTS: Final = 4_000_000
+CHECKS_PER_CHORD: Final = 16
+LEAST_CHECKS: Final = 512
+GOLDEN: Final = 0.6180339887498949
+"""Checks stand at this offset, so that they never coincide with the table's dyadic parameters."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Samples:
+    """Vertices on a curve."""
+
+    parameters: FloatArray
+    """(k,) float64, strictly increasing, from one end of the interval to the other."""
+    points: FloatArray
+    """(k, 3) float64, mm: the curve at the parameters."""
+
+    def __post_init__(self) -> None:
+        self.parameters.setflags(write=False)
+        self.points.setflags(write=False)
+
+
+def sample_curve(
+    point_at: PointAt,
+    interval: tuple[float, float],
+    tolerance: float,
+    *,
+    breaks: Sequence[float] | FloatArray = (),
+    max_chord: float | None = None,
+) -> Samples:
+    """Samples a curve so that no point of it is farther than ``tolerance`` from its chord.
+
+    Chords are as long as the tolerance allows, then evened out within each smooth piece at the same
+    number. A closed curve (same point at both ends) ends with its first point, and has at least two
+    chords. Where the parameter stands still for a stretch, that stretch gets no vertex of its own.
+
+    Breaks that follow each other within 1e-6 of the curve's length merge into the first of them,
+    or into the end of the interval where that is the near one, so that no chord is shorter.
+    Features that are narrower than 1e-3 of a smooth piece's parameter range can be missed.
+
+    Args:
+        point_at: the curve, from (k,) float64 parameters to (k, 3) points in mm; called some ten
+            times with many parameters each.
+        interval: first and last parameter.
+        tolerance: mm; largest distance from a curve point to its chord (the segment, not its line).
+        breaks: parameters where the curve is not C1; each is a vertex. Ends of the interval may be
+            among them.
+        max_chord: mm; no chord is longer.
+
+    Returns:
+        The vertices, both ends of the interval included.
+
+    Raises:
+        InputError: an argument is not finite or out of range, the curve has no length, jumps or is
+            not finite, or the tolerance can only be held by chords shorter than 1e-6 of its length.
+    """
+    _check_lengths(tolerance, max_chord)
+    corners = _corners(interval, breaks)
+    for attempt, margin in enumerate(SAMPLING_MARGINS):
+        edges = _first_edges(corners, FIRST_CELLS * 4**attempt)
+        cells = fit_cells(
+            point_at, edges, SURROGATE_PER_TOLERANCE * tolerance, share_of_extent=SURROGATE_PER_SIZE
+        )
+        parameters = _place(cells, corners, tolerance, margin, max_chord)
+        points = evaluate(point_at, parameters)
+        if _largest_gap(point_at, parameters, points) <= tolerance:
+            return Samples(parameters, points)
+    raise InputError(
+        f"curve - has features too narrow to follow from parameter {interval[0]:.9g} to "
+        f"{interval[1]:.9g} - chords within {tolerance:.3g} mm could not be confirmed - "
+        "pass the parameters around the feature as breaks"
+    )
+
+
+def _check_lengths(tolerance: float, max_chord: float | None) -> None:
+    for name, length in (("tolerance", tolerance), ("max_chord", max_chord)):
+        if length is not None and not (math.isfinite(length) and length > 0):
+            raise InputError(
+                f"{name} - is {length} mm - must be finite and above 0 mm - give a length in mm"
+            )
+
+
+def _corners(interval: tuple[float, float], breaks: Sequence[float] | FloatArray) -> FloatArray:
+    """The interval's ends and the breaks between them, increasing, without repeats."""
+    start, end = (float(parameter) for parameter in interval)
+    if not (math.isfinite(start) and math.isfinite(end) and math.isfinite(end - start)):
+        raise InputError(
+            f"interval - runs from {start} to {end} - parameters must be finite - "
+            "give the first and the last parameter"
+        )
+    if not start < end:
+        raise InputError(
+            f"interval - runs from {start:.9g} to {end:.9g} - the last parameter must be above "
+            "the first - swap or widen it"
+        )
+    inner = np.asarray(breaks, dtype=np.float64)
+    if inner.ndim != 1 or not np.isfinite(inner).all():
+        raise InputError(
+            f"breaks - an array of shape {inner.shape} with {np.sum(~np.isfinite(inner))} values "
+            "that are not finite - a flat list of finite parameters is needed - clean it"
+        )
+    outside = inner[(inner < start) | (inner > end)]
+    if len(outside):
+        raise InputError(
+            f"breaks - {outside[0]:.9g} lies outside - the interval is {start:.9g} to {end:.9g} - "
+            "leave out breaks that are not on the curve"
+        )
+    return np.unique(np.concatenate(([start, end], inner)))
+
+
+def _first_edges(corners: FloatArray, count: int) -> FloatArray:
+    """Splits every smooth piece evenly, into ``count`` cells or a few more in all."""
+    pieces = len(corners) - 1
+    each = max(FIRST_CELLS_OF_PIECE, -(-count // pieces))
+    shares = np.arange(each) / each
+    edges = corners[:-1, None] + np.diff(corners)[:, None] * shares
+    return np.unique(np.append(edges, corners[-1]))
+
+
+def _place(
+    cells: Cells, corners: FloatArray, tolerance: float, margin: float, max_chord: float | None
+) -> FloatArray:
+    """The vertices' parameters, on the polynomials that stand for the curve."""
+    arc = np.sum(np.linalg.norm(np.diff(cells.nodes, axis=1), axis=2), axis=1)
+    arc = np.concatenate(([0.0], np.cumsum(arc)))
+    length = float(arc[-1])
+    _check_size(cells.size, length, tolerance)
+    # Polynomials and round-off blur lengths; a hundredth keeps chords clear of the limit.
+    shortest = 1.01 * SHORTEST_SEGMENT_PER_LENGTH * length
+    longest = math.inf if max_chord is None else max_chord * (1 - 1e-9)
+    spacing = min(length / TABLE_SHARE, longest / 8)
+    sag = TABLE_SAG_PER_TOLERANCE * tolerance
+    t, x = tabulate(cells.edges, cells.coefficients, sag, spacing, MOST_TABLE_POINTS)
+    if t[-1] < corners[-1] or longest < shortest:
+        raise InputError(
+            f"curve - {length:.6g} mm long - a tolerance of {tolerance:.3g} mm"
+            + ("" if max_chord is None else f" and chords up to {max_chord:.3g} mm")
+            + " ask for too many vertices - raise them"
+        )
+    kept = _merged(corners, np.interp(corners, cells.edges, arc), shortest)
+    index: IndexArray = np.searchsorted(t, kept).astype(np.int64)
+    limits = (margin * tolerance, longest, shortest)
+    parameters: FloatArray
+    parameters, failed = place_chords(t, x, cells.edges, cells.coefficients, index, limits)
+    if failed >= 0:
+        raise InputError(
+            f"curve - from parameter {kept[failed]:.9g} to {kept[failed + 1]:.9g} the tolerance of "
+            f"{tolerance:.3g} mm takes chords shorter than {shortest:.3g} mm - 1e-6 of the "
+            f"curve's {length:.6g} mm is the least - raise the tolerance or remove the tiny edge"
+        )
+    return parameters
+
+
+def _check_size(size: float, length: float, tolerance: float) -> None:
+    if length <= 64 * np.finfo(np.float64).eps * size:
+        raise InputError(
+            "curve - all its points coincide - a directrix needs a length above 0 mm - "
+            "choose another curve"
+        )
+    finest = FINEST_TOLERANCE_PER_SIZE * size
+    if tolerance < finest:
+        raise InputError(
+            f"tolerance - is {tolerance:.3g} mm - at coordinates up to {size:.6g} mm at least "
+            f"{finest:.3g} mm can be told from round-off - raise it or move the curve to the origin"
+        )
+
+
+def _merged(corners: FloatArray, arc: FloatArray, shortest: float) -> FloatArray:
+    """Leaves out corners too close behind the one before, or too close before the end."""
+    kept = [0]
+    last = len(corners) - 1
+    for i in range(1, last):
+        if arc[i] - arc[kept[-1]] >= shortest and arc[last] - arc[i] >= shortest:
+            kept.append(i)
+    return corners[[*kept, last]]
+
+
+def _largest_gap(point_at: PointAt, parameters: FloatArray, points: FloatArray) -> float:
+    """Largest distance, mm, from the curve itself to its chords."""
+    chords = len(parameters) - 1
+    count = max(CHECKS_PER_CHORD, -(-LEAST_CHECKS // chords))
+    shares = (np.arange(count) + GOLDEN) / count
+    between = parameters[:-1, None] + np.diff(parameters)[:, None] * shares
+    curve = evaluate(point_at, between.ravel()).reshape(chords, count, 3)
+    chord = np.diff(points, axis=0)[:, None, :]
+    offset = curve - points[:-1, None, :]
+    square = np.sum(chord * chord, axis=2)
+    along = np.clip(np.sum(offset * chord, axis=2) / square, 0.0, 1.0)
+    gaps = np.linalg.norm(offset - along[..., None] * chord, axis=2)
+    return float(np.max(gaps))
