@@ -33,6 +33,12 @@ LARGEST_COORDINATE: Final = 1e9
 STEEPEST_HALF_FOLD: Final = 1e6
 """Tangent of half a fold angle from which a bridge counts as folded back on itself (180 degrees)."""
 
+INFLECTION_SAMPLES: Final = 2
+"""An inflection bridge is at most this many samples from bridges bent either way."""
+
+INFLECTION_SAGITTAS: Final = 1.0
+"""Neighbours share a tangent plane if no further from it than this many typical sagittas."""
+
 SHORTEST_SEGMENT_PER_LENGTH: Final = 1e-6
 """No sampled segment is shorter than this share of its curve's length."""
 
@@ -160,17 +166,38 @@ FILE_SIZE_LIMIT: Final = 256 * 2**20
 SNIFFED_BYTES: Final = 2**16
 """How far into a file its format is looked for; comments may stand before the mark."""
 
-LARGEST_COORDINATE: Final = 1e8
-"""mm; a shape further out than 100 km is a damaged number, not a shoe or a hull."""
-
-JOIN_GAP: Final = 1e-3
-"""mm; loose edges of one named curve in a STEP file join where their ends are this near."""
-
 FILE_UNIT: Final = "mm"
 """The unit of a file that declares none."""
 
 MESH_ANGLE: Final = 0.2
 """rad; how far the normals of neighbouring triangles of a mesh may differ on a curved face."""
+
+BATCH_TIMEOUT_S: Final = 600.0
+"""s; a file of a batch that takes longer is given up."""
+
+BATCH_MEMORY_GIB: Final = 4.0
+"""GiB of address space for one worker of a batch."""
+
+BATCH_LEAST_MEMORY_GIB: Final = 2.0
+"""GiB; the CAD kernel and numba alone map 1.2, and fail in odd ways just above that."""
+
+BATCH_MEMORY_HIT: Final = 0.85
+"""A worker that crashes with more than this share of its memory mapped ran into the limit."""
+
+BATCH_NAME_MASK: Final = "{stem}"
+"""Names of a batch's outputs when the user says nothing."""
+
+BATCH_DISK_FREE_MIB: Final = 64
+"""MiB; a batch stops when its disk has less left, before files start to fail."""
+
+BATCH_TICK_S: Final = 0.05
+"""s between looks at the memory and the time of the workers."""
+
+BATCH_IN_FLIGHT: Final = 64
+"""Jobs handed to a caller's own executor at a time."""
+
+BATCH_STARTS: Final = 3
+"""A job whose worker is gone before the job begins is handed out this often in all."""
 
 
 def planarity_from(tolerance: float) -> float:

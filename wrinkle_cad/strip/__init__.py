@@ -1,1 +1,39 @@
-"""The mathematics of a strip: arrays in, frozen results out; no CAD."""
+"""Mathematics of a strip between two curves in space: arrays in, frozen results out.
+
+Names are exported lazily (PEP 562): importing the folder compiles nothing and loads no numba.
+"""
+
+from __future__ import annotations
+
+from importlib import import_module
+from typing import Any, Final
+
+_MODULE_OF: Final = {
+    "P_STEP": "triangulation",
+    "Q_STEP": "triangulation",
+    "Gap": "gaps",
+    "Samples": "sampling",
+    "Triangulation": "triangulation",
+    "Unrolling": "unrolling",
+    "find_gaps": "gaps",
+    "invalid_lengths": "gaps",
+    "sample_curve": "sampling",
+    "triangulate": "triangulation",
+    "unroll": "unrolling",
+    "unroll_cones": "unrolling",
+    "validity_matrix": "convexity",
+}
+
+__all__ = sorted(_MODULE_OF)  # noqa: PLE0605 - names are resolved by __getattr__
+
+
+def __getattr__(name: str) -> Any:  # noqa: ANN401 - whatever the module exports
+    if name not in _MODULE_OF:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    value = getattr(import_module(f"{__name__}.{_MODULE_OF[name]}"), name)
+    globals()[name] = value
+    return value
+
+
+def __dir__() -> list[str]:
+    return list(__all__)

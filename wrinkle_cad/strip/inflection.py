@@ -1,0 +1,106 @@
+"""What invalid bridges mean: a change of bending, which is harmless, or twist, which is not."""
+
+from __future__ import annotations
+
+from itertools import combinations
+
+import numpy as np
+import numpy.typing as npt
+
+from ..settings import INFLECTION_SAMPLES, INFLECTION_SAGITTAS
+
+Floats = npt.NDArray[np.float64]
+Bools = npt.NDArray[np.bool_]
+
+
+def plane_misfit(view: Floats) -> Floats:
+    """Returns how far the neighbours of each bridge lie from a common plane through it.
+
+    Args:
+        view: (9, k) float64, mm; bridges as look_along fills them in.
+
+    Returns:
+        (k,) float64, mm; the largest distance of a neighbour from the plane through the bridge for
+        which that is smallest.
+    """
+    offsets = view[1:].reshape(4, 2, -1)
+    misfit = np.full(view.shape[1], np.inf)
+    # The best plane has two neighbours at the same distance, so it holds their sum or difference.
+    for a, b in combinations(range(4), 2):
+        for direction in (offsets[a] + offsets[b], offsets[a] - offsets[b]):
+            size = np.hypot(*direction)
+            side = np.abs(offsets[:, 0] * direction[1] - offsets[:, 1] * direction[0])
+            distance = np.divide(
+                side.max(axis=0), size, where=size > 0.0, out=np.full_like(size, np.inf)
+            )
+            misfit = np.minimum(misfit, distance)
+    return np.where(np.isinf(misfit), 0.0, misfit)
+
+
+def inflection_bridges(
+    bridges: npt.NDArray[np.int64], valid: Bools, fold: Floats, view: Floats, sagitta: float
+) -> Bools:
+    """Returns which invalid interior bridges stand at a change of bending and are no defect.
+
+    Such a bridge has a valid one bent up before it and a valid one bent down behind it (or the
+    reverse), both at most two samples away, counted on the rail where that is less; and its
+    neighbours share a tangent plane to within what the sampling can tell: the typical sagitta.
+
+    Args:
+        bridges: (k, 2) int64; i, j of each bridge on the path.
+        valid: (k,) bool; locally convex bridges.
+        fold: (k-2,) float64, rad; signed fold angles of the interior bridges.
+        view: (9, k) float64, mm; the bridges seen along themselves.
+        sagitta: mm; typical sagitta of the rails.
+
+    Returns:
+        (k,) bool; a subset of the invalid interior bridges.
+    """
+    reach = INFLECTION_SAMPLES
+    first = np.minimum(*(np.searchsorted(side, side - reach, "left") for side in bridges.T))
+    stop = np.maximum(*(np.searchsorted(side, side + reach, "right") for side in bridges.T))
+    here = np.arange(bridges.shape[0])
+    before, after = [], []
+    for sign in (1.0, -1.0):
+        bent = np.zeros(bridges.shape[0] + 1, dtype=np.int64)
+        bent[2:-1] = valid[1:-1] & (sign * fold > 0.0)
+        count = np.cumsum(bent)
+        before.append(count[here] > count[first])
+        after.append(count[stop] > count[here + 1])
+    changes = (before[0] & after[1]) | (before[1] & after[0])
+    candidate = changes & ~valid
+    candidate[[0, -1]] = False
+    candidate[candidate] = plane_misfit(view[:, candidate]) <= INFLECTION_SAGITTAS * sagitta
+    return candidate
+
+
+def fan_aware_twist(steps: npt.NDArray[np.int8], valid: Bools, fold: Floats) -> Floats:
+    """Returns how much the surface's normal turns along each bridge.
+
+    Bridges between two steps of the same kind run through one sample: a fan, which is a piece of a
+    cone and has no twist of its own. Twist shows where the kind of step changes: there the plane
+    that follows one rail meets the plane that follows the other. A turn into a fan which is undone
+    by an opposite turn out of it is twist (the smaller of both angles, so that a crease on one side
+    is not taken for it); a turn that stays is bending. A locally convex bridge has a plane that
+    touches both rails, hence no twist.
+
+    Args:
+        steps: (k-1,) int8; the kinds of step of the path.
+        valid: (k,) bool; locally convex bridges.
+        fold: (k-2,) float64, rad; signed fold angles of the interior bridges.
+
+    Returns:
+        (k,) float64, rad, not negative.
+    """
+    twist = np.zeros(valid.shape[0])
+    turns = np.flatnonzero(steps[1:] != steps[:-1])
+    if turns.size > 1:
+        angle = fold[turns]
+        into, out = angle[:-1], angle[1:]
+        undone = np.where(into * out < 0.0, np.minimum(np.abs(into), np.abs(out)), 0.0)
+        # Bridge k+1 has fold k; a fan lies from one turning bridge to the next.
+        run = np.repeat(undone, np.diff(turns))
+        twist[turns[0] + 1 : turns[-1] + 1] = run
+        twist[turns[1:] + 1] = np.maximum(undone, np.append(undone[1:], 0.0))
+    twist[valid] = 0.0
+    return twist

@@ -1,0 +1,136 @@
+"""Triangulations found by looking one step ahead: LODT+LMBT and LMBT of Wang and Tang, section 4.
+
+What the paper leaves open is decided so:
+
+- The nearest valid bridge of (i, j) is the one with the smallest (i'-i) + (j'-j), i' > i and j' > j;
+  of several, the one with the largest i'. The last bridge counts as valid, since it is in every
+  triangulation, so a nearest one always exists.
+- The fold at the first bridge costs nothing, so there the P-step is taken. Of two steps that
+  bend equally the P-step is taken everywhere.
+- A step that makes a triangle of zero area, or folds back by 180 degrees, comes after one that
+  does not, whatever it bends.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+import numpy.typing as npt
+
+from .compiled import compiled
+from .convexity import judge_row
+from .folding import cost_row
+from .sightlines import VIEW_ROWS, bank_lengths, look_along, padded_banks
+
+Floats = npt.NDArray[np.float64]
+Rails = tuple[Floats, Floats, Floats, Floats]
+
+
+@compiled
+def _look(rails: Rails, i: int, j: int, view: Floats) -> None:
+    p, p_banks, q, q_banks = rails
+    look_along(p[i], p_banks[:, i : i + 2], q[:, j : j + 1], q_banks[:, j : j + 2], view)
+
+
+@compiled
+def _is_valid(rails: Rails, i: int, j: int, planarity: float) -> bool:
+    if i == rails[0].shape[0] - 1 and j == rails[2].shape[1] - 1:
+        return True
+    view = np.empty((VIEW_ROWS, 1))
+    valid = np.empty(1, dtype=np.bool_)
+    _look(rails, i, j, view)
+    judge_row(view, planarity, valid)
+    return bool(valid[0])
+
+
+@compiled
+def _easier_step(rails: Rails, i: int, j: int, earlier: int, nothing: float, energy: int) -> int:
+    """The step that bends bridge (i, j) less, after the earlier one that arrived there."""
+    view = np.empty((VIEW_ROWS, 1))
+    banks = np.empty((4, 1))
+    bending, fold_backs = np.empty((4, 1)), np.empty((4, 1))
+    degenerate, area = np.empty((2, 1)), np.empty((2, 1))
+    _look(rails, i, j, view)
+    banks[:2, 0] = bank_lengths(rails[1][:, i : i + 2])
+    banks[2:, 0] = bank_lengths(rails[3][:, j : j + 2])
+    cost_row(view, banks, nothing, energy, bending, fold_backs, degenerate, area)
+    row = 2 * earlier
+    p_count = degenerate[0, 0] + fold_backs[row, 0]
+    q_count = degenerate[1, 0] + fold_backs[row + 1, 0]
+    if p_count != q_count:
+        return 0 if p_count < q_count else 1
+    return 0 if bending[row, 0] <= bending[row + 1, 0] else 1
+
+
+@compiled
+def _nearest_valid(rails: Rails, i: int, j: int, planarity: float) -> tuple[int, int]:
+    m, n = rails[0].shape[0], rails[2].shape[1]
+    for distance in range(2, m + n):
+        for further in range(min(distance - 1, m - 1 - i), 0, -1):
+            column = j + distance - further
+            if column >= n:
+                break
+            if _is_valid(rails, i + further, column, planarity):
+                return i + further, column
+    return m - 1, n - 1
+
+
+@compiled
+def _walk(
+    rails: Rails, is_developable: bool, planarity: float, nothing: float, energy: int
+) -> npt.NDArray[np.int8]:
+    m, n = rails[0].shape[0], rails[2].shape[1]
+    steps = np.empty(m + n - 2, dtype=np.int8)
+    goal_i, goal_j = (0, 0) if is_developable else (m - 1, n - 1)
+    i = j = step = 0
+    for number in range(m + n - 2):
+        if i == goal_i and j == goal_j:
+            goal_i, goal_j = -1, -1
+        if goal_i < 0 and i < m - 1 and j < n - 1:
+            p_valid = _is_valid(rails, i + 1, j, planarity)
+            q_valid = _is_valid(rails, i, j + 1, planarity)
+            if not (p_valid or q_valid):
+                goal_i, goal_j = _nearest_valid(rails, i, j, planarity)
+            elif not (p_valid and q_valid):
+                step = 0 if p_valid else 1
+            else:
+                step = _easier_step(rails, i, j, step, nothing, energy)
+        elif goal_i < 0:
+            step = 0 if j == n - 1 else 1
+        if goal_i >= 0:
+            if i == goal_i or j == goal_j:
+                step = 0 if j == goal_j else 1
+            else:
+                step = _easier_step(rails, i, j, step, nothing, energy)
+        steps[number] = step
+        i, j = i + 1 - step, j + step
+    return steps
+
+
+def local_steps(
+    p: Floats,
+    q: Floats,
+    *,
+    is_developable: bool,
+    planarity: float,
+    nothing: float,
+    energy: int,
+) -> npt.NDArray[np.int8]:
+    """Returns the steps of the locally best triangulation.
+
+    O(m+n) time and memory but for the looks for a nearest valid bridge, each of which costs the
+    square of the distance it finds.
+
+    Args:
+        p: (m, 3) float64, mm; checked samples of directrix P.
+        q: (n, 3) float64, mm; checked samples of directrix Q.
+        is_developable: LODT, with LMBT between valid bridges, if True; LMBT all along if False.
+        planarity: mm; see validity_matrix.
+        nothing: mm; a distance that is round-off.
+        energy: HINGE or PAPER.
+
+    Returns:
+        (m+n-2,) int8: 0 a P-step, 1 a Q-step.
+    """
+    rails = (p, padded_banks(p), np.ascontiguousarray(q.T), padded_banks(q))
+    steps: npt.NDArray[np.int8] = _walk(rails, is_developable, planarity, nothing, energy)
+    return steps

@@ -1,0 +1,182 @@
+"""The two sampled rails of a strip: what is accepted, and how finely they are sampled."""
+
+from __future__ import annotations
+
+import numpy as np
+import numpy.typing as npt
+
+from ..errors import InputError
+from ..settings import (
+    LARGEST_COORDINATE,
+    PLANARITY_FLOOR_PER_COORDINATE,
+    PLANARITY_PER_TOLERANCE,
+    ROUND_OFF_PER_COORDINATE,
+)
+from .compiled import compiled
+
+Floats = npt.NDArray[np.float64]
+
+
+def checked_rails(p: npt.ArrayLike, q: npt.ArrayLike) -> tuple[Floats, Floats]:
+    """Returns both rails as new float64 arrays, or says what is wrong with them.
+
+    Args:
+        p: (m, 3) float, mm; samples of directrix P, m >= 2. Not written to.
+        q: (n, 3) float, mm; samples of directrix Q, n >= 2. Not written to.
+
+    Raises:
+        InputError: a rail is no (k, 3) array of at least two finite points.
+    """
+    return _checked_rail(p, "P"), _checked_rail(q, "Q")
+
+
+def _checked_rail(points: npt.ArrayLike, name: str) -> Floats:
+    try:
+        rail = np.array(points, dtype=np.float64, order="C")
+    except (TypeError, ValueError) as error:
+        raise InputError(
+            f"directrix {name} - not an array of numbers ({error}) - a (k, 3) array is needed"
+            " - pass one x, y, z per sample"
+        ) from error
+    if rail.ndim != 2 or rail.shape[1] != 3 or rail.shape[0] < 2:
+        raise InputError(
+            f"directrix {name} - an array of shape {rail.shape} - shape (k, 3) with k >= 2 is needed"
+            " - pass one x, y, z per sample"
+        )
+    bad = np.flatnonzero(~np.isfinite(rail).all(axis=1))
+    if bad.size:
+        raise InputError(
+            f"directrix {name} - {bad.size} samples are not finite, the first is number {bad[0]}"
+            " - every coordinate must be a finite number - repair the curve or its sampling"
+        )
+    largest = float(np.abs(rail).max())
+    if largest > LARGEST_COORDINATE:
+        raise InputError(
+            f"directrix {name} - a coordinate of {largest:.3g} mm"
+            f" - at most {LARGEST_COORDINATE:.0e} mm - check the unit of the input"
+        )
+    return rail
+
+
+def round_off(p: Floats, q: Floats) -> float:
+    """Returns the distance in mm below which coordinates of these rails say nothing."""
+    return ROUND_OFF_PER_COORDINATE * float(max(np.abs(p).max(), np.abs(q).max()))
+
+
+def sagittas(rail: Floats) -> Floats:
+    """Returns the distance of each inner sample from the chord between its neighbours.
+
+    Args:
+        rail: (k, 3) float64, mm.
+
+    Returns:
+        (k-2,) float64, mm.
+    """
+    chord = rail[2:] - rail[:-2]
+    arm = rail[1:-1] - rail[:-2]
+    length = np.sqrt((chord * chord).sum(axis=1))
+    along = np.divide(
+        (arm * chord).sum(axis=1), length * length, where=length > 0.0, out=length * 0
+    )
+    off = arm - np.clip(along, 0.0, 1.0)[:, None] * chord
+    return np.sqrt((off * off).sum(axis=1))
+
+
+def typical_sagitta(p: Floats, q: Floats) -> float:
+    """Returns the median sagitta in mm of the rails' bent triples; 0 when both are straight.
+
+    Some four times the chord tolerance for rails sampled to one. Straight stretches are left out:
+    they are sampled as sparsely as one likes and tell nothing.
+    """
+    both = np.concatenate((sagittas(p), sagittas(q)))
+    bent = both[both > round_off(p, q)]
+    return float(np.median(bent)) if bent.size else 0.0
+
+
+def default_planarity(p: Floats, q: Floats) -> float:
+    """Returns the planarity in mm for rails that come without a chord tolerance.
+
+    A fixed share of the typical sagitta, never below what round-off of the coordinates does to
+    neighbours whose spacings differ some hundredfold.
+    """
+    floor = PLANARITY_FLOOR_PER_COORDINATE * float(max(np.abs(p).max(), np.abs(q).max()))
+    return max(PLANARITY_PER_TOLERANCE * typical_sagitta(p, q), floor)
+
+
+def checked_planarity(p: Floats, q: Floats, planarity: float | None) -> float:
+    """Returns the planarity to use, in mm: the one given, or the default one of these rails.
+
+    Raises:
+        InputError: it is negative or not finite.
+    """
+    if planarity is None:
+        return default_planarity(p, q)
+    if not (np.isfinite(planarity) and planarity >= 0.0):
+        raise InputError(
+            f"planarity - {planarity} mm - a finite distance of at least 0 mm is needed"
+            " - leave it out to have it chosen"
+        )
+    return float(planarity)
+
+
+def check_rails_apart(p: Floats, q: Floats, planarity: float) -> None:
+    """Refuses rails that coincide: everywhere, or over more than one bank edge.
+
+    A rail may touch the other in single samples, and share one bank edge with it, as where both run
+    into the same end. Everywhere means: no sample is further from the other rail than its
+    sampling can tell.
+
+    Raises:
+        InputError: the strip has no width over a stretch; the message says where.
+    """
+    p_gap, q_gap = _distances(p, q), _distances(q, p)
+    widest = max(float(p_gap.max()), float(q_gap.max()))
+    limit = max(planarity, typical_sagitta(p, q))
+    if widest <= limit:
+        raise InputError(
+            f"strip - P and Q coincide: nowhere more than {widest:.3g} mm apart"
+            f" - their sampling tells {limit:.3g} mm - choose two different curves"
+        )
+    for name, gap, rail in (("P", p_gap, p), ("Q", q_gap, q)):
+        first, last = _longest_run(gap <= planarity)
+        if last - first >= 2:
+            length = float(np.sqrt((np.diff(rail[first : last + 1], axis=0) ** 2).sum(1)).sum())
+            raise InputError(
+                f"strip - P and Q coincide over {length:.3g} mm, from sample {first} to {last} of"
+                f" {name} - they may share one bank edge at most - trim both curves there"
+            )
+
+
+def _longest_run(marked: npt.NDArray[np.bool_]) -> tuple[int, int]:
+    """First and last index of the longest run of True; (0, -1) if there is none."""
+    edges = np.flatnonzero(np.diff(np.concatenate(([False], marked, [False]))))
+    if edges.size == 0:
+        return 0, -1
+    starts, stops = edges[::2], edges[1::2]
+    longest = int(np.argmax(stops - starts))
+    return int(starts[longest]), int(stops[longest]) - 1
+
+
+@compiled
+def _distances(points: Floats, rail: Floats) -> Floats:
+    """Distance of each point from the polyline, (k,) float64."""
+    result = np.empty(points.shape[0])
+    bank = rail[1:] - rail[:-1]
+    inverse = np.empty(bank.shape[0])
+    for j in range(bank.shape[0]):
+        square = bank[j, 0] ** 2 + bank[j, 1] ** 2 + bank[j, 2] ** 2
+        inverse[j] = 1.0 / square if square > 0.0 else 0.0
+    for i in range(points.shape[0]):
+        nearest = np.inf
+        for j in range(bank.shape[0]):
+            x = points[i, 0] - rail[j, 0]
+            y = points[i, 1] - rail[j, 1]
+            z = points[i, 2] - rail[j, 2]
+            along = (x * bank[j, 0] + y * bank[j, 1] + z * bank[j, 2]) * inverse[j]
+            along = min(max(along, 0.0), 1.0)
+            x -= along * bank[j, 0]
+            y -= along * bank[j, 1]
+            z -= along * bank[j, 2]
+            nearest = min(nearest, x * x + y * y + z * z)
+        result[i] = np.sqrt(nearest)
+    return result

@@ -1,0 +1,242 @@
+"""A boundary bridge triangulation: the path through the bridges, its triangles, its measures."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+import numpy.typing as npt
+
+from ..errors import InputError
+from ..settings import CRITERIA, ENERGY, SEARCH
+from .convexity import judge_row
+from .folding import ENERGIES, cost_row, fold_angles
+from .global_search import best_steps, weights_of
+from .inflection import fan_aware_twist, inflection_bridges
+from .local_search import local_steps
+from .rails import check_rails_apart, checked_planarity, checked_rails, round_off, typical_sagitta
+from .sightlines import VIEW_ROWS, bank_lengths, look_along_path, padded_banks
+
+Floats = npt.NDArray[np.float64]
+Bools = npt.NDArray[np.bool_]
+
+P_STEP: Final = 0
+"""One bank edge forward on P: triangle p[i] p[i+1] q[j]."""
+
+Q_STEP: Final = 1
+"""One bank edge forward on Q: triangle p[i] q[j+1] q[j]."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Triangulation:
+    """A strip of m+n-2 triangles between two sampled rails; every array is read-only.
+
+    Bridges are numbered along the path, 0 to m+n-2; interior ones are all but the first and the
+    last. Counts are of interior bridges.
+    """
+
+    p: Floats
+    """(m, 3) float64, mm; samples of directrix P."""
+    q: Floats
+    """(n, 3) float64, mm; samples of directrix Q."""
+    bridges: npt.NDArray[np.int64]
+    """(m+n-1, 2) int64; i, j of each bridge p[i] q[j], from (0, 0) to (m-1, n-1)."""
+    triangles: npt.NDArray[np.int64]
+    """(m+n-2, 3) int64 into vstack((p, q)); counter-clockwise as p[i] p[i+1] q[j]."""
+    steps: npt.NDArray[np.int8]
+    """(m+n-2,) int8; P_STEP or Q_STEP, the kind of each triangle."""
+    valid: Bools
+    """(m+n-1,) bool; locally convex bridges (see validity_matrix)."""
+    inflection: Bools
+    """(m+n-1,) bool; invalid interior bridges where the bending changes sign: no defects."""
+    fold: Floats
+    """(m+n-3,) float64, rad; fold angle of each interior bridge, 0 when flat, positive for a ridge
+    seen from the side where the triangles are counter-clockwise; 0 beside a degenerate triangle."""
+    twist: Floats
+    """(m+n-1,) float64, rad, not negative; turn of the normal along each bridge, 0 in fans."""
+    bending_at: Floats
+    """(m+n-3,) float64; bending energy of each interior bridge."""
+    bending: float
+    """Bending energy of the strip: the sum over its interior bridges."""
+    area: float
+    """mm2; sum of the triangles' areas."""
+    length: float
+    """mm; sum of the bridges' lengths."""
+    degenerate_count: int
+    """Triangles of zero area, and folds of 180 degrees, neither of which bends at finite cost."""
+    planarity: float
+    """mm; how far a neighbour may lie on the wrong side of a valid bridge's plane."""
+    criteria: tuple[str, ...]
+    """What was minimised, in this order."""
+    search: str
+    """"global" or "local"."""
+    energy: str
+    """"hinge" or "paper"."""
+    is_closed: bool = False
+    """Whether the last bridge is the first one again."""
+
+    @property
+    def interior_count(self) -> int:
+        """Bridges between the first and the last."""
+        return self.bridges.shape[0] - 2
+
+    @property
+    def invalid_count(self) -> int:
+        """Interior bridges that are not locally convex, inflections included."""
+        return int(np.count_nonzero(~self.valid[1:-1]))
+
+    @property
+    def inflection_count(self) -> int:
+        """Interior bridges that are invalid only because the bending changes sign there."""
+        return int(np.count_nonzero(self.inflection))
+
+
+def triangulate(
+    p: npt.ArrayLike,
+    q: npt.ArrayLike,
+    *,
+    criteria: Sequence[str] = CRITERIA,
+    search: str = SEARCH,
+    energy: str = ENERGY,
+    planarity: float | None = None,
+) -> Triangulation:
+    """Returns the triangulation between two rails that is best by ordered criteria.
+
+    `search="global"` is the lexicographic optimum over all triangulations: ("invalid", "bending")
+    is GODT+GMBT of Wang and Tang, ("bending",) GMBT, ("area",) GMAT, ("length",) least total
+    bridge length. A criterion after one that is not a count only breaks exact ties. Just before
+    bending, triangles of zero area are counted. `search="local"` looks one step ahead: LODT+LMBT
+    if the criteria start with "invalid", LMBT if with "bending". Of equal continuations the P-step
+    is taken, always.
+
+    Args:
+        p: (m, 3) float, mm; samples of directrix P, m >= 2.
+        q: (n, 3) float, mm; samples of directrix Q in the same direction, n >= 2.
+        criteria: ordered choice of "invalid", "bending", "area", "length", each at most once.
+        search: "global" or "local".
+        energy: "hinge" or "paper", see folding.ENERGIES.
+        planarity: mm; how far a neighbour may lie on the wrong side of a valid bridge's plane;
+            by default a thousandth of the rails' median sagitta.
+
+    Raises:
+        InputError: a rail is no (k, 3) array of at least two finite points, the rails coincide over
+            more than one bank edge, all triangles have zero area, or an option is unknown.
+    """
+    if energy not in ENERGIES:
+        raise InputError(f"energy - {energy!r} - one of {', '.join(ENERGIES)} - choose one")
+    weights = weights_of(criteria)
+    names = (criteria,) if isinstance(criteria, str) else tuple(criteria)
+    p, q = checked_rails(p, q)
+    limit = checked_planarity(p, q, planarity)
+    nothing = round_off(p, q)
+    check_rails_apart(p, q, limit)
+    if search == "global":
+        steps = best_steps(p, q, weights, planarity=limit, nothing=nothing, energy=ENERGIES[energy])
+    elif search == "local" and names[0] in ("invalid", "bending"):
+        steps = local_steps(
+            p,
+            q,
+            is_developable=names[0] == "invalid",
+            planarity=limit,
+            nothing=nothing,
+            energy=ENERGIES[energy],
+        )
+    elif search == "local":
+        raise InputError(
+            f'search - "local" with criteria that start with {names[0]} - they must start with invalid'
+            ' or bending - use search="global"'
+        )
+    else:
+        raise InputError(f"search - {search!r} - one of global, local - choose one")
+    return measured(p, q, steps, planarity=limit, criteria=names, search=search, energy=energy)
+
+
+def measured(
+    p: Floats,
+    q: Floats,
+    steps: npt.NDArray[np.int8],
+    *,
+    planarity: float,
+    criteria: tuple[str, ...],
+    search: str,
+    energy: str,
+) -> Triangulation:
+    """Returns the triangulation that given steps make, with all its measures.
+
+    Args:
+        p: (m, 3) float64, mm; checked samples of directrix P.
+        q: (n, 3) float64, mm; checked samples of directrix Q.
+        steps: (m+n-2,) int8; m-1 P-steps and n-1 Q-steps.
+        planarity: mm; see validity_matrix.
+        criteria: what the steps were chosen by.
+        search: how they were searched.
+        energy: "hinge" or "paper".
+
+    Raises:
+        InputError: all triangles have zero area.
+    """
+    nothing = round_off(p, q)
+    bridges = np.zeros((steps.size + 1, 2), dtype=np.int64)
+    bridges[1:, 1] = np.cumsum(steps)
+    bridges[1:, 0] = np.arange(1, steps.size + 1) - bridges[1:, 1]
+    p_banks, q_banks = padded_banks(p), padded_banks(q)
+    view = look_along_path(p, p_banks, np.ascontiguousarray(q.T), q_banks, bridges)
+    banks = np.stack(
+        [
+            bank_lengths(side)[bridges[:, rail] + after]
+            for rail, side in ((0, p_banks), (1, q_banks))
+            for after in (0, 1)
+        ]
+    )
+    count = bridges.shape[0]
+    valid = np.empty(count, dtype=np.bool_)
+    judge_row(view, planarity, valid)
+    bending, fold_backs = np.empty((4, count)), np.empty((4, count))
+    degenerate, area = np.empty((2, count)), np.empty((2, count))
+    cost_row(view, banks, nothing, ENERGIES[energy], bending, fold_backs, degenerate, area)
+    leaving = np.arange(count - 1)
+    is_flat = degenerate[steps, leaving] > 0.0
+    if is_flat.all():
+        raise InputError(
+            "strip - every triangle has zero area - at least one must have some"
+            " - choose two curves that are apart"
+        )
+    row = 2 * steps[:-1] + steps[1:]
+    bending_at = bending[row, leaving[1:]]
+    fold = fold_angles(view[:, 1:-1], steps)
+    fold[is_flat[:-1] | is_flat[1:]] = 0.0
+    fields = {
+        "p": p,
+        "q": q,
+        "bridges": bridges,
+        "triangles": _triangles(bridges, steps, p.shape[0]),
+        "steps": steps,
+        "valid": valid,
+        "inflection": inflection_bridges(bridges, valid, fold, view, typical_sagitta(p, q)),
+        "fold": fold,
+        "twist": fan_aware_twist(steps, valid, fold),
+        "bending_at": bending_at,
+    }
+    for array in fields.values():
+        array.flags.writeable = False
+    return Triangulation(
+        **fields,
+        bending=float(bending_at.sum()),
+        area=float(area[steps, leaving].sum()),
+        length=float(view[0].sum()),
+        degenerate_count=int(is_flat.sum() + fold_backs[row, leaving[1:]].sum()),
+        planarity=planarity,
+        criteria=criteria,
+        search=search,
+        energy=energy,
+    )
+
+
+def _triangles(
+    bridges: npt.NDArray[np.int64], steps: npt.NDArray[np.int8], m: int
+) -> npt.NDArray[np.int64]:
+    i, j = bridges[:-1].T
+    middle = np.where(steps == P_STEP, i + 1, m + j + 1)
+    return np.stack((i, middle, m + j), axis=1)
