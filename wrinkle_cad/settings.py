@@ -203,3 +203,16 @@ BATCH_STARTS: Final = 3
 def planarity_from(tolerance: float) -> float:
     """Returns the planarity in mm that fits a chord tolerance in mm."""
     return PLANARITY_PER_TOLERANCE * tolerance
+
+
+RAIL_POINTS: Final = 161
+"""A rail is laid on the upper at so many points."""
+
+END_POINTS: Final = 25
+"""An end of an opening is laid on the upper at so many points."""
+
+WIDTH_PER_LENGTH_MIN: Final = 1e-4
+"""Rails nearer to each other than this share of their length enclose no area."""
+
+MEETING_PER_LENGTH: Final = 1e-6
+"""Rails whose ends are nearer than this share of their length meet in a point there."""

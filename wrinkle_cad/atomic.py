@@ -1,0 +1,136 @@
+"""Files that appear whole or not at all.
+
+A file is written under a temporary name in its own folder, flushed to the disk and then renamed, so
+that no reader and no power cut ever meets a half-written file under a final name. Temporary names
+start with ``.`` and end in ``.part``.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import secrets
+from collections.abc import Iterable
+from pathlib import Path
+from typing import Final
+
+PART_SUFFIX: Final = ".part"
+_BACKUP_SUFFIX: Final = ".kept"
+
+
+def write_atomically(path: Path, content: bytes) -> None:
+    """Writes a file so that it holds either all of the content or what stood there before.
+
+    Args:
+        path: the file; its folder must exist.
+        content: every byte of it.
+
+    Raises:
+        OSError: the folder does not exist or cannot be written to, or the disk is full; nothing
+            is left behind.
+    """
+    replace_together([(write_aside(path, content), path)])
+
+
+def write_aside(path: Path, content: bytes) -> Path:
+    """Writes and flushes a temporary file beside ``path``, for `replace_together`.
+
+    Args:
+        path: the file that the content is meant for; it is not touched.
+        content: every byte of it.
+
+    Returns:
+        The temporary file, in the same folder.
+
+    Raises:
+        OSError: it cannot be written; nothing is left behind.
+    """
+    part = _beside(path, PART_SUFFIX)
+    try:
+        with part.open("xb") as stream:
+            stream.write(content)
+            stream.flush()
+            os.fsync(stream.fileno())
+    except BaseException:
+        part.unlink(missing_ok=True)
+        raise
+    return part
+
+
+def replace_together(pairs: Iterable[tuple[Path, Path]]) -> None:
+    """Renames files written aside to their final names, all of them or none.
+
+    What stood under a final name is kept beside it until every file is in place. If one rename
+    fails, all that happened is undone and the temporary files are removed. A crash in the middle
+    leaves whole files only, some of them from before; the kept ones end in ``.kept``.
+
+    Args:
+        pairs: ``(temporary, final)``, each pair in one folder, final names distinct.
+
+    Raises:
+        OSError: a rename failed; every final name holds what it held before.
+        ValueError: two pairs have the same final name.
+    """
+    todo = list(pairs)
+    finals = [final for _, final in todo]
+    if len(set(finals)) != len(finals):
+        _remove(part for part, _ in todo)
+        raise ValueError("two files are meant for the same name")
+    kept: dict[Path, Path | None] = {}
+    try:
+        for part, final in todo:
+            kept[final] = _keep(final) if len(todo) > 1 else None
+            part.replace(final)
+    except BaseException:
+        _undo(todo, kept)
+        raise
+    _remove(backup for backup in kept.values() if backup is not None)
+    for folder in sorted({final.parent for final in finals}):
+        _flush_folder(folder)
+
+
+def _beside(path: Path, suffix: str) -> Path:
+    # A name of its own length: the final name may be as long as the file system allows.
+    return path.with_name(f".{secrets.token_hex(8)}{suffix}")
+
+
+def _keep(final: Path) -> Path | None:
+    """Gives what stands under a final name a second name, or returns None if nothing does."""
+    if not final.exists():
+        return None
+    backup = _beside(final, _BACKUP_SUFFIX)
+    try:
+        os.link(final, backup)
+    except OSError:
+        # File systems without hard links (FAT, some network shares).
+        final.replace(backup)
+    return backup
+
+
+def _undo(todo: list[tuple[Path, Path]], kept: dict[Path, Path | None]) -> None:
+    for part, final in todo:
+        is_replaced = final in kept and not part.exists()
+        backup = kept.get(final)
+        if backup is not None:
+            backup.replace(final)
+            backup.unlink(missing_ok=True)
+        elif is_replaced and len(todo) > 1:
+            final.unlink(missing_ok=True)
+        part.unlink(missing_ok=True)
+
+
+def _remove(paths: Iterable[Path]) -> None:
+    for path in paths:
+        path.unlink(missing_ok=True)
+
+
+def _flush_folder(folder: Path) -> None:
+    """Makes the renames themselves survive a power cut, where the system can do that."""
+    if not hasattr(os, "O_DIRECTORY"):
+        return
+    with contextlib.suppress(OSError):
+        handle = os.open(folder, os.O_RDONLY | os.O_DIRECTORY)
+        try:
+            os.fsync(handle)
+        finally:
+            os.close(handle)

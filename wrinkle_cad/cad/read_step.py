@@ -1,0 +1,100 @@
+"""STEP -> named shapes, through the kernel's document of names, colors and placements."""
+
+from __future__ import annotations
+
+import io
+import re
+from itertools import groupby
+from typing import Final
+
+from OCP.IFSelect import IFSelect_RetDone
+from OCP.STEPCAFControl import STEPCAFControl_Reader
+
+from .collect import Found, listed, take_apart
+from .kernel import KERNEL_ERRORS, as_edge, edges_of, kind_name
+from .loose_edges import chain_edges
+from .shapes import CURVE_KINDS, CadFile
+from .sniff import STEP, Source
+from .step_text import check_step, length_units, plain_text, why_no_shape
+from .units import check_unit, unit_words
+from .xde import Leaf, leaves_of, new_document, set_parameter, silence_kernel
+
+_NAMED_SURFACE: Final = re.compile(
+    rb"\b(?:ADVANCED_FACE|FACE_SURFACE|OPEN_SHELL|CLOSED_SHELL)\s*\(\s*'(?!'|NONE'|Unnamed')"
+)
+
+
+def read(source: Source, unit: str | None) -> CadFile:
+    """Reads the content of a STEP file.
+
+    Args:
+        source: the file.
+        unit: the unit of a file that declares none.
+
+    Raises:
+        InputError: as for ``read_cad``.
+    """
+    text = plain_text(source.content)
+    check_step(source, text)
+    declared = length_units(text)
+    mm_per_unit = check_unit(source, declared, unit)
+    leaves = _leaves(source, text)
+    shapes = listed(source, _found(leaves), mm_per_unit)
+    if not any(shape.measure > 0.0 for shape in shapes):
+        raise source.fail(why_no_shape(text))
+    words = unit_words(declared, unit)
+    return CadFile(source.path, STEP, words, shapes, source.is_compressed)
+
+
+def _leaves(source: Source, text: bytes) -> list[Leaf]:
+    silence_kernel()
+    document = new_document()
+    try:
+        reader = STEPCAFControl_Reader()
+        # Process-wide and changed by other libraries, so set each time.
+        set_parameter("xstep.cascade.unit", "MM")
+        set_parameter("read.stepcaf.subshapes.name", int(bool(_NAMED_SURFACE.search(text))))
+        reader.SetNameMode(True)
+        reader.SetColorMode(True)
+        if reader.ReadStream(source.path.name, io.BytesIO(text)) != IFSelect_RetDone:
+            raise source.fail("damaged: not readable as STEP although its frame is whole")
+        if reader.NbRootsForTransfer() == 0 or not reader.Transfer(document):
+            return []
+        return leaves_of(document)
+    except KERNEL_ERRORS as error:
+        words = " ".join(str(error).split()) or type(error).__name__
+        raise source.fail(f"damaged: the CAD kernel fails on it ({words})") from error
+
+
+def _found(leaves: list[Leaf]) -> list[Found]:
+    """Returns what can be chosen: per named occurrence the edges that belong together joined."""
+    found: list[Found] = []
+    for _, group in groupby(leaves, key=lambda leaf: leaf.named_at):
+        found += _found_in_group(list(group))
+    curves = [item for item in found if kind_name(item.shape) in CURVE_KINDS]
+    return _loosened(found) if len(curves) == 1 else found
+
+
+def _found_in_group(leaves: list[Leaf]) -> list[Found]:
+    pieces = [item for leaf in leaves for item in take_apart(leaf.shape, leaf.name, leaf.color)]
+    is_loose = [kind_name(item.shape) == "edge" for item in pieces]
+    loose = [item for item, is_edge in zip(pieces, is_loose, strict=True) if is_edge]
+    rest = [item for item, is_edge in zip(pieces, is_loose, strict=True) if not is_edge]
+    chains = chain_edges([as_edge(item.shape) for item in loose])
+    named = [
+        Found(shape, name, is_free=False) for leaf in leaves for name, shape in leaf.named_surfaces
+    ]
+    first = loose[0] if loose else Found(leaves[0].shape)
+    return [*rest, *(Found(chain, first.name, first.color) for chain in chains), *named]
+
+
+def _loosened(found: list[Found]) -> list[Found]:
+    """Takes an unnamed wire of two edges, the only curve, apart: two rails that meet at an end."""
+    apart: list[Found] = []
+    for item in found:
+        edges = edges_of(item.shape) if kind_name(item.shape) == "wire" else []
+        if len(edges) == 2 and not item.name:
+            apart += [Found(edge, "", item.color) for edge in edges]
+        else:
+            apart.append(item)
+    return apart

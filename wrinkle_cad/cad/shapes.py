@@ -1,0 +1,94 @@
+"""What a reader finds and a writer takes: named shapes, as neutral records."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Final
+
+if TYPE_CHECKING:
+    from OCP.TopoDS import TopoDS_Shape
+
+CURVE_KINDS: Final = ("edge", "wire")
+SURFACE_KINDS: Final = ("face", "shell", "compound")
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class NamedShape:
+    """One shape of a file that can be chosen by name or index."""
+
+    name: str
+    """The name in the file, its own or that of the nearest named ancestor; empty if none."""
+    index: int
+    """Its place in the file, from 1, as ``inspect`` prints it."""
+    kind: str
+    """``vertex``, ``edge``, ``wire``, ``face``, ``shell``, ``solid`` or ``compound`` (of faces or
+    of vertices)."""
+    shape: TopoDS_Shape
+    """The shape, world coordinates, mm."""
+    measure: float
+    """Length in mm of an edge or wire, area in mm^2 of anything with faces, 0 of vertices."""
+    color: tuple[float, float, float] | None = None
+    """Red, green, blue, sRGB, 0 to 1; None where the file gives none."""
+    is_free: bool = True
+    """False for a named face or shell inside a solid or shell that is itself listed."""
+
+    @property
+    def unit(self) -> str:
+        """The unit of the measure: ``mm`` or ``mm2``; empty for vertices."""
+        if self.kind in CURVE_KINDS:
+            return "mm"
+        return "mm2" if self.measure > 0.0 else ""
+
+    @property
+    def is_curve(self) -> bool:
+        """Whether it can be a directrix."""
+        return self.kind in CURVE_KINDS
+
+    @property
+    def is_surface(self) -> bool:
+        """Whether it can be an upper without being asked for (a solid can when it is chosen)."""
+        return self.kind in SURFACE_KINDS and self.measure > 0.0 and self.is_free
+
+    def __str__(self) -> str:
+        """One candidate in a list: index, name, kind and measure."""
+        name = f" '{self.name}'" if self.name else ""
+        measure = f" {self.measure:.6g} {self.unit}" if self.unit else ""
+        return f"[{self.index}]{name} {self.kind}{measure}"
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class CadFile:
+    """Everything in one CAD file that can be chosen."""
+
+    path: Path
+    """The file."""
+    format: str
+    """``STEP``, ``BREP`` or ``IGES``."""
+    unit: str
+    """The unit of length: as the file declares it, or as it was given where it declares none."""
+    shapes: tuple[NamedShape, ...]
+    """In the file's order; ``shapes[i].index == i + 1``."""
+    is_compressed: bool = False
+    """Whether the file was compressed with gzip."""
+
+    def curves(self) -> tuple[NamedShape, ...]:
+        """Returns the free edges and wires."""
+        return tuple(shape for shape in self.shapes if shape.is_curve)
+
+    def surfaces(self) -> tuple[NamedShape, ...]:
+        """Returns the free faces, shells and compounds of faces."""
+        return tuple(shape for shape in self.shapes if shape.is_surface)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Part:
+    """One shape to be written, with its name and color."""
+
+    shape: TopoDS_Shape
+    """World coordinates, mm; an edge, wire, face, shell, solid, vertex or compound of one kind."""
+    name: str = ""
+    """Any text; control characters become blanks in the file."""
+    color: Sequence[float] | None = None
+    """Red, green, blue, sRGB, 0 to 1; None for the reading program's default."""

@@ -1,0 +1,193 @@
+r"""The kernel's STEP text -> the text that goes to disk: header, names, colors.
+
+The kernel encodes names as it likes and orders colors by memory addresses, so it writes neither
+here: products get placeholder names, which are replaced by names in the standard's own encoding
+(``\X2\``), and the colors are added after the last entity in the order of the parts.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass
+from datetime import UTC, datetime
+from typing import Final
+
+from wrinkle_cad.errors import CadError
+
+from .shapes import Part
+from .xde import printable
+
+_EPOCH: Final = datetime(1970, 1, 1, tzinfo=UTC)
+_PLACEHOLDER: Final = re.compile(rb"'wrinkle-part-(\d{6})'")
+# The kernel's own strings hold no semicolon, so a statement ends at the first one.
+_PRODUCT: Final = re.compile(rb"#(\d+) = PRODUCT\(\s*'wrinkle-part-(\d{6})'")
+_STRUCTURE: Final = re.compile(
+    rb"#(\d+) = (PRODUCT_DEFINITION(?:_FORMATION|_SHAPE)?|\w*SHAPE_(?:DEFINITION_)?REPRESENTATION)"
+    rb"\(([^;]*)\);"
+)
+_PLACEMENT: Final = re.compile(rb"#(\d+) = AXIS2_PLACEMENT_3D\(")
+_LAST: Final = re.compile(rb"#(\d+) = ")
+_NUMBER: Final = re.compile(rb"#(\d+)")
+_STRING_LIMIT: Final = 32767
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Header:
+    """What the header of a STEP file says about the file."""
+
+    file_name: str
+    """The file's own name."""
+    timestamp: datetime | None = None
+    """When it was written; the start of 1970 when None."""
+    author: str = ""
+    """Who wrote it."""
+    organization: str = ""
+    """For whom."""
+
+
+def placeholder(i: int) -> str:
+    """Returns the name under which the kernel is to write part ``i``."""
+    return f"wrinkle-part-{i:06d}"
+
+
+def encoded(text: str) -> bytes:
+    """Returns a text as a STEP string with its quotes: ASCII only, whatever the text holds."""
+    shown = printable(text)[:_STRING_LIMIT]
+    pieces = [b"'"]
+    for run in re.findall(r"[ -~]+|[^ -~]+", shown):
+        if run.isascii():
+            pieces.append(run.replace("\\", "\\\\").replace("'", "''").encode())
+        else:
+            wide = any(ord(letter) > 0xFFFF for letter in run)
+            digits = run.encode("utf-32-be" if wide else "utf-16-be").hex().upper()
+            pieces.append(f"\\X{4 if wide else 2}\\{digits}\\X0\\".encode())
+    return b"".join([*pieces, b"'"])
+
+
+def finished_text(raw: bytes, parts: Sequence[Part], header: Header) -> bytes:
+    """Returns the file's text with its own header, the parts' names and their colors.
+
+    Args:
+        raw: what the kernel wrote for the parts, under placeholder names.
+        parts: in the order in which the kernel got them.
+        header: what the header is to say.
+
+    Raises:
+        CadError: the kernel left a part out.
+    """
+    text = raw.replace(b"\r\n", b"\n")
+    start = text.index(b"\nDATA;")
+    end = text.rindex(b"ENDSEC;")
+    data = text[start + 1 : end]
+    styles = _styles(data, parts)
+    names = [encoded(part.name) for part in parts]
+    data = _PLACEHOLDER.sub(lambda match: names[int(match[1])], data)
+    schema = re.search(rb"FILE_SCHEMA\(.*?\);", text[:start], re.DOTALL)
+    if schema is None:
+        raise CadError("write STEP", "the CAD kernel wrote no schema")
+    head = _header(header, schema[0])
+    return b"".join([head, data, styles, b"ENDSEC;\nEND-ISO-10303-21;\n"])
+
+
+def _header(header: Header, schema: bytes) -> bytes:
+    when = (header.timestamp or _EPOCH).replace(microsecond=0, tzinfo=None).isoformat()
+    file_name = b",".join(
+        [
+            encoded(header.file_name),
+            encoded(when),
+            b"(" + encoded(header.author) + b")",
+            b"(" + encoded(header.organization) + b")",
+            b"'Open CASCADE'",
+            b"'wrinkle-cad'",
+            b"''",
+        ]
+    )
+    lines = (
+        b"ISO-10303-21;",
+        b"HEADER;",
+        b"FILE_DESCRIPTION(('wrinkle-cad'),'2;1');",
+        b"FILE_NAME(" + file_name + b");",
+        schema.replace(b"\n", b""),
+        b"ENDSEC;\n",
+    )
+    return b"\n".join(lines)
+
+
+def _styles(data: bytes, parts: Sequence[Part]) -> bytes:
+    """Returns the entities that color the parts, numbered after the last one of the data."""
+    items = _items_of_parts(data)
+    missing = [i for i in range(len(parts)) if i not in items]
+    if missing:
+        name = printable(parts[missing[0]].name)
+        raise CadError("write STEP", f"the CAD kernel left out part '{name}' - check its shape")
+    following = max(int(match[1]) for match in _LAST.finditer(data)) + 1
+    lines: list[bytes] = []
+    for i, part in enumerate(parts):
+        if part.color is not None:
+            red, green, blue = (_real(value) for value in part.color[:3])
+            added = _style(following, *items[i], (red, green, blue))
+            following += len(added)
+            lines += added
+    return b"".join(line + b"\n" for line in lines)
+
+
+def _real(value: float) -> str:
+    """Returns a number from 0 to 1 as the standard wants it: with a decimal point."""
+    return f"{float(value):.6f}"
+
+
+def _items_of_parts(data: bytes) -> dict[int, tuple[int, list[int]]]:
+    """Returns for each part the number of its context and those of its geometric items."""
+    part_of = {int(match[1]): int(match[2]) for match in _PRODUCT.finditer(data)}
+    items: dict[int, list[int]] = {}
+    links: dict[bytes, list[list[int]]] = {}
+    for match in _STRUCTURE.finditer(data):
+        numbers = [int(number) for number in _NUMBER.findall(match[3])]
+        if match[2] == b"SHAPE_DEFINITION_REPRESENTATION" or b"PRODUCT" in match[2]:
+            links.setdefault(match[2], []).append([int(match[1]), *numbers])
+        else:
+            items[int(match[1])] = numbers
+    for keyword in (b"PRODUCT_DEFINITION_FORMATION", b"PRODUCT_DEFINITION"):
+        part_of |= _followed(links.get(keyword, []), part_of)
+    part_of |= _followed(links.get(b"PRODUCT_DEFINITION_SHAPE", []), part_of)
+    placements = {int(match[1]) for match in _PLACEMENT.finditer(data)}
+    found: dict[int, tuple[int, list[int]]] = {}
+    for _, shape, representation in links.get(b"SHAPE_DEFINITION_REPRESENTATION", []):
+        if shape in part_of and representation in items:
+            *inner, context = items[representation]
+            shapes = [number for number in inner if number not in placements]
+            if shapes:
+                found[part_of[shape]] = (context, shapes)
+    return found
+
+
+def _followed(links: list[list[int]], part_of: dict[int, int]) -> dict[int, int]:
+    """Returns the part that each linking entity leads to."""
+    return {number: part_of[to] for number, to, *_ in links if to in part_of}
+
+
+def _style(first: int, context: int, shapes: list[int], color: tuple[str, str, str]) -> list[bytes]:
+    """Returns the entities ``first`` and up that give some items one color as faces and curves."""
+    rgb, fill_color, fill, area, side, usage, font, curve, style = range(first, first + 9)
+    items = range(first + 9, first + 9 + len(shapes))
+    lines = [
+        f"#{rgb} = COLOUR_RGB('',{color[0]},{color[1]},{color[2]});",
+        f"#{fill_color} = FILL_AREA_STYLE_COLOUR('',#{rgb});",
+        f"#{fill} = FILL_AREA_STYLE('',(#{fill_color}));",
+        f"#{area} = SURFACE_STYLE_FILL_AREA(#{fill});",
+        f"#{side} = SURFACE_SIDE_STYLE('',(#{area}));",
+        f"#{usage} = SURFACE_STYLE_USAGE(.BOTH.,#{side});",
+        f"#{font} = DRAUGHTING_PRE_DEFINED_CURVE_FONT('continuous');",
+        f"#{curve} = CURVE_STYLE('',#{font},POSITIVE_LENGTH_MEASURE(0.1),#{rgb});",
+        f"#{style} = PRESENTATION_STYLE_ASSIGNMENT((#{usage},#{curve}));",
+    ]
+    for item, shape in zip(items, shapes, strict=True):
+        lines.append(f"#{item} = STYLED_ITEM('color',(#{style}),#{shape});")
+    listed = ",".join(f"#{item}" for item in items)
+    last = first + 9 + len(shapes)
+    lines.append(
+        f"#{last} = MECHANICAL_DESIGN_GEOMETRIC_PRESENTATION_REPRESENTATION('',"
+        f"({listed}),#{context});"
+    )
+    return [line.encode() for line in lines]

@@ -1,0 +1,215 @@
+"""STEP and STL out: names in any alphabet, colors, world coordinates, the same bytes every time.
+
+Each part becomes a product of its own, side by side at the identity placement, so that no program
+has to resolve an assembly. The file appears under its final name only when it is whole.
+"""
+
+from __future__ import annotations
+
+import io
+import tempfile
+from collections.abc import Sequence
+from datetime import datetime
+from pathlib import Path
+from typing import Final
+
+from OCP.BRepBuilderAPI import BRepBuilderAPI_Copy, BRepBuilderAPI_Transform
+from OCP.BRepMesh import BRepMesh_IncrementalMesh
+from OCP.BRepTools import BRepTools
+from OCP.IFSelect import IFSelect_RetDone
+from OCP.STEPCAFControl import STEPCAFControl_Writer
+from OCP.STEPControl import STEPControl_AsIs
+from OCP.StlAPI import StlAPI_Writer
+from OCP.TopExp import TopExp
+from OCP.TopLoc import TopLoc_Location
+from OCP.TopoDS import TopoDS_Shape
+from OCP.XCAFDoc import XCAFDoc_DocumentTool
+
+from wrinkle_cad import settings
+from wrinkle_cad.atomic import write_atomically
+from wrinkle_cad.errors import CadError, ExportError
+
+from .kernel import faces_of, kernel_step
+from .shapes import Part
+from .step_bytes import Header, finished_text, placeholder
+from .xde import new_document, set_name, set_parameter, silence_kernel
+
+try:  # OCP 7.9
+    from OCP.TopTools import TopTools_IndexedMapOfShape
+except ImportError:  # OCP 8.0 keeps every collection in one module
+    from OCP.collections import (
+        IndexedMap_TopoDS_Shape_TopTools_ShapeMapHasher as TopTools_IndexedMapOfShape,
+    )
+
+_SCHEMAS: Final = {"AP214": "AP214IS", "AP242": "AP242DIS"}
+
+
+def write_step(
+    path: Path,
+    parts: Sequence[Part],
+    *,
+    schema: str = settings.STEP_SCHEMA,
+    timestamp: datetime | None = None,
+    author: str = "",
+    organization: str = "",
+) -> None:
+    """Writes named and colored shapes into one STEP file, in mm.
+
+    Args:
+        path: the file; it is replaced as a whole.
+        parts: at least one; in this order in the file.
+        schema: ``AP214`` or ``AP242``.
+        timestamp: the time in the header; the start of 1970 when None, so that equal input gives
+            equal bytes.
+        author: for the header.
+        organization: for the header.
+
+    Raises:
+        ExportError: the kernel cannot write a shape, or the file cannot be written; what stood
+            there before is untouched.
+    """
+    header = Header(path.name, timestamp, author, organization)
+    try:
+        content = step_bytes(parts, header, schema=schema)
+        write_atomically(path, content)
+    except CadError as error:
+        raise ExportError(path, "STEP", str(error)) from error
+    except OSError as error:
+        raise _disk_error(path, "STEP", error) from error
+
+
+def step_bytes(
+    parts: Sequence[Part], header: Header, *, schema: str = settings.STEP_SCHEMA
+) -> bytes:
+    """Returns the content of a STEP file, for who writes it elsewhere; see ``write_step``.
+
+    Raises:
+        CadError: no parts, an unknown schema, or the kernel cannot write a shape.
+    """
+    if schema not in _SCHEMAS:
+        raise CadError("write STEP", f"schema {schema!r} - one of {', '.join(_SCHEMAS)}")
+    if not parts:
+        raise CadError("write STEP", "no shapes - at least one is needed")
+    silence_kernel()
+    with kernel_step("write STEP"):
+        raw = _kernel_text(_apart([part.shape for part in parts]), _SCHEMAS[schema])
+    return finished_text(raw, parts, header)
+
+
+def _kernel_text(shapes: Sequence[TopoDS_Shape], schema: str) -> bytes:
+    document = new_document()
+    tool = XCAFDoc_DocumentTool.ShapeTool_s(document.Main())
+    for i, shape in enumerate(shapes):
+        set_name(tool.AddShape(shape, False), placeholder(i))
+    writer = STEPCAFControl_Writer()
+    # Process-wide and changed by other libraries, so set each time.
+    for name, value in (
+        ("write.step.schema", schema),
+        ("write.step.unit", "MM"),
+        ("write.surfacecurve.mode", 0),
+        ("write.precision.mode", 0),
+        ("write.step.assembly", 0),
+        ("write.step.nonmanifold", 0),
+    ):
+        set_parameter(name, value)
+    writer.SetNameMode(True)
+    writer.SetColorMode(False)
+    stream = io.BytesIO()
+    if not writer.Transfer(document, STEPControl_AsIs):
+        raise CadError("write STEP", "the CAD kernel cannot translate the shapes")
+    if writer.WriteStream(stream) != IFSelect_RetDone:
+        raise CadError("write STEP", "the CAD kernel cannot write the shapes")
+    return stream.getvalue()
+
+
+def _apart(shapes: Sequence[TopoDS_Shape]) -> list[TopoDS_Shape]:
+    """Returns the shapes in world coordinates, none sharing a piece with an earlier one.
+
+    The kernel writes a shape that is part of another one as nothing at all, and one that carries a
+    placement as an assembly.
+    """
+    seen = TopTools_IndexedMapOfShape()
+    own: list[TopoDS_Shape] = []
+    for shape in shapes:
+        pieces = TopTools_IndexedMapOfShape()
+        TopExp.MapShapes_s(shape, pieces)
+        is_shared = seen.Extent() > 0 and any(
+            seen.Contains(pieces.FindKey(i)) for i in range(1, pieces.Extent() + 1)
+        )
+        place = shape.Location()
+        if not place.IsIdentity():
+            inner = shape.Located(TopLoc_Location())
+            own.append(BRepBuilderAPI_Transform(inner, place.Transformation(), True).Shape())
+        else:
+            own.append(BRepBuilderAPI_Copy(shape).Shape() if is_shared else shape)
+        TopExp.MapShapes_s(shape, seen)
+    return own
+
+
+def write_stl(
+    path: Path,
+    shape: TopoDS_Shape,
+    *,
+    tolerance: float = settings.TOLERANCE,
+    angular_tolerance: float = settings.MESH_ANGLE,
+) -> None:
+    """Writes the triangles of a shape as a binary STL file, in mm.
+
+    Args:
+        path: the file; it is replaced as a whole.
+        shape: anything with faces; triangles that it already carries are not used.
+        tolerance: mm; how far a triangle may lie from its face.
+        angular_tolerance: rad; how far neighbouring normals may differ on one face.
+
+    Raises:
+        ExportError: there are no faces, the kernel cannot mesh them, or the file cannot be written;
+            what stood there before is untouched.
+    """
+    try:
+        content = stl_bytes(shape, tolerance=tolerance, angular_tolerance=angular_tolerance)
+        write_atomically(path, content)
+    except CadError as error:
+        raise ExportError(path, "STL", str(error)) from error
+    except OSError as error:
+        raise _disk_error(path, "STL", error) from error
+
+
+def stl_bytes(
+    shape: TopoDS_Shape,
+    *,
+    tolerance: float = settings.TOLERANCE,
+    angular_tolerance: float = settings.MESH_ANGLE,
+) -> bytes:
+    """Returns the content of a binary STL file; see ``write_stl``.
+
+    Raises:
+        CadError: there are no faces, or the kernel cannot mesh them.
+    """
+    if not faces_of(shape):
+        raise CadError("mesh the shape", "it has no faces - pass a face, shell or solid")
+    silence_kernel()
+    with kernel_step("mesh the shape"):
+        # A mesh is stored in the shape, and whoever owns the shape did not ask for one.
+        own = BRepBuilderAPI_Copy(shape, True, False).Shape()
+        BRepTools.Clean_s(own)
+        BRepMesh_IncrementalMesh(own, tolerance, False, angular_tolerance, False)
+        writer = StlAPI_Writer()
+        writer.ASCIIMode = False
+        with tempfile.TemporaryDirectory(prefix="wrinkle-cad-") as folder:
+            copy = Path(folder, "shape.stl")
+            if not writer.Write(own, str(copy)):
+                raise CadError("mesh the shape", "the CAD kernel made no triangles")
+            return copy.read_bytes()
+
+
+def brep_bytes(shape: TopoDS_Shape) -> bytes:
+    """Returns the content of a BREP file, the kernel's own text format, without triangles."""
+    stream = io.BytesIO()
+    with kernel_step("write BREP"):
+        BRepTools.Write_s(shape, stream)
+    return stream.getvalue()
+
+
+def _disk_error(path: Path, form: str, error: OSError) -> ExportError:
+    reason = error.strerror or type(error).__name__
+    return ExportError(path, form, f"{reason} - nothing was written - free space or another folder")
