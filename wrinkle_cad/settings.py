@@ -216,3 +216,24 @@ WIDTH_PER_LENGTH_MIN: Final = 1e-4
 
 MEETING_PER_LENGTH: Final = 1e-6
 """Rails whose ends are nearer than this share of their length meet in a point there."""
+
+FADE: Final = 0.3
+"""The share of a rail's length over which margin and waves fade in, and out again."""
+
+FADE_MIN: Final = 0.02
+"""A shorter fade is a step."""
+
+RAIL_OFF_UPPER: Final = 10.0
+"""mm; a rail further away from the upper was not meant for it."""
+
+RAIL_ON_UPPER: Final = 1e-5
+"""mm; a rail nearer to the upper lies on it."""
+
+BORDER_REACH_PER_LENGTH: Final = 1e-4
+"""A rail that ends nearer to the upper's border than this share of its length ends on it."""
+
+RIBBON_PER_LENGTH: Final = 0.01
+"""The ribbons that cut an opening stand out of the upper by this share of the rails' length."""
+
+AREA_BALANCE: Final = 1e-5
+"""Relative; by how much the areas of body and removed part may differ from the upper's."""

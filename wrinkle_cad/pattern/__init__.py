@@ -1,1 +1,1 @@
-"""The flat pattern: what goes to the cutter; no CAD."""
+"""Two-dimensional: what goes to the cutter. No CAD kernel in this folder."""

@@ -1,0 +1,163 @@
+"""The seam allowance: the cut line around a sew line, one width per side.
+
+The cut-out region is the union of the piece and, for every segment, the rectangle of its side's
+width on its outside; convex corners get a mitre that is clipped at a limit, convex points of a
+curve a fan of facets around the arc. Every point of the region lies within the width of its side
+(mitres apart), so the union trims an offset that crosses itself wherever it does. The union is
+shapely's: nothing here intersects curves by hand.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+import shapely
+
+from wrinkle_cad import settings
+
+from .options import PerSide
+from .outline import closed_turns, corner_vertices
+from .piece import Bools, Floats, Ints, Outline, frozen, make_outline
+
+
+def cut_outline(
+    sew: Outline, widths: PerSide, *, mitre_limit: float, tolerance: float
+) -> tuple[Outline, tuple[Floats, ...]]:
+    """Returns the cut line and the cut-outs that the allowance encloses, if any.
+
+    Args:
+        sew: the sew line, a simple polygon.
+        widths: mm, in the order of ``SIDES``; with all of them 0 the cut line is the sew line.
+        mitre_limit: corners reach at most this many widths from the sew line.
+        tolerance: mm; arcs are approximated, and short segments merged, within it.
+    """
+    if not any(width > 0.0 for width in widths):
+        return sew, ()
+    region = shapely.union_all(_parts(sew, np.array(widths), mitre_limit, tolerance))
+    if region.geom_type != "Polygon":
+        region = max(region.geoms, key=lambda part: part.area)
+    cut = _cleaned(region.exterior, tolerance)
+    holes = (
+        _cleaned(ring, tolerance)
+        for ring in region.interiors
+        if not shapely.Polygon(ring).buffer(-tolerance).is_empty
+    )
+    sides = _nearest_sides(cut, sew, np.array(widths))
+    outline = make_outline(cut, sides, corner_vertices(cut, sides))
+    return outline, tuple(frozen(hole) for hole in holes)
+
+
+def _parts(
+    sew: Outline, widths: Floats, mitre_limit: float, tolerance: float
+) -> list[shapely.Polygon]:
+    steps = np.roll(sew.points, -1, axis=0) - sew.points
+    along = steps / np.linalg.norm(steps, axis=1)[:, None]
+    outward = np.column_stack((along[:, 1], -along[:, 0]))
+    width = widths[sew.sides]
+    parts: list[shapely.Polygon] = [shapely.Polygon(sew.points)]
+    parts.extend(_rectangles(sew.points, steps, outward * width[:, None], width > 0.0))
+    turn = closed_turns(sew.points)
+    before = np.roll(np.arange(len(turn)), 1)
+    for i in np.flatnonzero((turn > 0.0) & (width + width[before] > 0.0)):
+        j = int(before[i])
+        if sew.corners[i]:
+            wedge = _mitre(along[j], along[i], width[j], width[i], mitre_limit)
+        else:
+            wedge = _fan(outward[j], float(turn[i]), width[i], tolerance)
+        ring = sew.points[i] + np.vstack((np.zeros(2), wedge))
+        parts.append(shapely.Polygon(ring))
+    return parts
+
+
+def _rectangles(
+    points: Floats, steps: Floats, shift: Floats, has_width: Bools
+) -> list[shapely.Polygon]:
+    first, second = points[has_width], (points + steps)[has_width]
+    out = shift[has_width]
+    rings = np.stack((first, first + out, second + out, second), axis=1)
+    return list(shapely.polygons(rings))
+
+
+def _mitre(
+    into: Floats, onward: Floats, width_in: float, width_on: float, mitre_limit: float
+) -> Floats:
+    """Returns the wedge of a corner seen from it: offset point, tip (or clipped tip), offset point.
+
+    ``into`` and ``onward`` are the unit directions of the two sides, turning left.
+    """
+    start = width_in * np.array((into[1], -into[0]))
+    stop = width_on * np.array((onward[1], -onward[0]))
+    sine = into[0] * onward[1] - into[1] * onward[0]
+    cosine = float(into @ onward)
+    reach = mitre_limit * max(width_in, width_on)
+    axis = into - onward
+    if sine > 1e-9:
+        ahead = (width_on - width_in * cosine) / sine
+        behind = (width_in - width_on * cosine) / sine
+        if ahead < 0.0 or behind < 0.0:
+            return np.vstack((start, stop))
+        tip = start + ahead * into
+        if np.hypot(*tip) <= reach:
+            return np.vstack((start, tip, stop))
+        axis = tip
+    axis = axis / np.hypot(*axis)
+    first = start + (reach - start @ axis) / (into @ axis) * into
+    second = stop + (reach - stop @ axis) / (onward @ axis) * onward
+    return np.vstack((start, first, second, stop))
+
+
+def _fan(outward: Floats, turn: float, width: float, tolerance: float) -> Floats:
+    """Returns facets around an arc of ``turn`` rad, outside it by at most ``tolerance``."""
+    largest = 2.0 * np.arccos(width / (width + tolerance))
+    count = max(1, int(np.ceil(turn / largest)))
+    angle = np.arctan2(outward[1], outward[0])
+    middles = angle + turn * (np.arange(count) + 0.5) / count
+    radii = np.full(count + 2, width / np.cos(0.5 * turn / count))
+    radii[[0, -1]] = width
+    angles = np.concatenate(([angle], middles, [angle + turn]))
+    return np.column_stack((radii * np.cos(angles), radii * np.sin(angles)))
+
+
+def _cleaned(ring: shapely.LinearRing, tolerance: float) -> Floats:
+    """Returns a ring as (k, 2), counter-clockwise, without the short segments of the union."""
+    whole = shapely.Polygon(ring).normalize().exterior.coords[:-1]
+    points = np.array(whole)[::-1]
+    for share in (1.0, 0.1, 0.0):
+        trial = _without_short_segments(points, share * tolerance)
+        if len(trial) >= 3 and shapely.Polygon(trial).is_valid:
+            return trial
+    return points
+
+
+def _without_short_segments(points: Floats, tolerance: float) -> Floats:
+    """Returns a closed polygon without the vertices that stand too close or say nothing."""
+    while len(points) > 3:
+        lengths = np.linalg.norm(np.roll(points, -1, axis=0) - points, axis=1)
+        turn = np.abs(closed_turns(points))
+        nearest = np.minimum(lengths, np.roll(lengths, 1))
+        # A vertex may go when it is closer than the tolerance to a neighbour that turns more,
+        # or when it lies on the line of its neighbours to within what the file can say.
+        sagitta = turn * nearest
+        flat = (sagitta < 10.0**-settings.DXF_DECIMALS) & (turn < 1.0)
+        crowded = (lengths < tolerance) | (np.roll(lengths, 1) < tolerance)
+        may_go = flat | (crowded & (turn < settings.PATTERN_CORNER))
+        order = np.empty(len(points), dtype=np.int64)
+        order[np.argsort(np.where(may_go, sagitta, np.inf), kind="stable")] = np.arange(len(points))
+        lowest = may_go & (order < np.roll(order, 1)) & (order < np.roll(order, -1))
+        if not lowest.any():
+            return points
+        points = points[~lowest]
+    return points
+
+
+def _nearest_sides(cut: Floats, sew: Outline, widths: Floats) -> Ints:
+    """Returns for each cut segment the side whose allowance it bounds, (k,) side indices."""
+    middles = shapely.points(0.5 * (cut + np.roll(cut, -1, axis=0)))
+    closed = np.vstack((sew.points, sew.points[:1]))
+    misses = np.full((len(widths), len(cut)), np.inf)
+    for side in np.unique(sew.sides):
+        index = np.flatnonzero(sew.sides == side)
+        segments = shapely.linestrings(np.stack((closed[index], closed[index + 1]), axis=1))
+        line = shapely.MultiLineString(list(segments))
+        misses[side] = shapely.distance(middles, line) - widths[side]
+    nearest: Ints = np.argmin(misses, axis=0).astype(np.int8)
+    return nearest

@@ -1,0 +1,128 @@
+"""What a piece looks like on paper or on the machine: strokes, spots and labels, each with a role.
+
+Every format that shows plain lines (DXF for cutters, SVG, PDF) draws from here, so that all of
+them show the same.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import shapely
+
+from wrinkle_cad import settings
+
+from .layers import Role
+from .options import NotchKind
+from .piece import Floats, Notch, PatternPiece, frozen
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Stroke:
+    """A polyline: (k, 2) mm; a closed one does not repeat its first point."""
+
+    role: Role
+    points: Floats
+    is_closed: bool = False
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Spot:
+    """A point: (2,) mm."""
+
+    role: Role
+    position: Floats
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Label:
+    """One line of text, its left end on the base line at (2,) mm, ``height`` mm high."""
+
+    role: Role
+    text: str
+    position: Floats
+    height: float
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Drawing:
+    """All that is drawn for one piece."""
+
+    strokes: tuple[Stroke, ...]
+    spots: tuple[Spot, ...]
+    labels: tuple[Label, ...]
+
+
+def draw(piece: PatternPiece) -> Drawing:
+    """Returns the strokes, spots and labels of a piece, in the order in which a machine acts."""
+    strokes: list[Stroke] = []
+    if piece.has_allowance:
+        strokes.append(Stroke("sew", piece.sew_line, is_closed=True))
+    for line, fold in zip(piece.rulings, piece.ruling_fold, strict=True):
+        # A ruling between facets of one plane is not folded: there is nothing to draw.
+        if abs(fold) >= settings.FLAT_FOLD:
+            strokes.append(Stroke("mountain" if fold > 0.0 else "valley", line))
+    strokes.append(Stroke("grain", piece.grain_line))
+    if piece.stretch_line is not None:
+        strokes.append(Stroke("stretch", piece.stretch_line))
+    strokes += [Stroke("notch", line) for notch in piece.notches for line in notch_lines(notch)]
+    strokes += [Stroke("cut", outline, is_closed=True) for outline in piece.cut_outs]
+    strokes.append(Stroke("cut", piece.cut_line, is_closed=True))
+    spots = tuple(Spot("punch", frozen(hole)) for hole in piece.drill_holes)
+    return Drawing(tuple(strokes), spots, _labels(piece))
+
+
+def notch_lines(notch: Notch) -> tuple[Floats, ...]:
+    """Returns the polylines, (k, 2) mm each, that are cut for a notch, from the cut line inward."""
+    along = np.array((notch.direction[1], -notch.direction[0]))
+    foot = notch.position
+    tip = foot + notch.depth * notch.direction
+    half = 0.5 * notch.width * along
+    shoulder = 0.75 * notch.depth * notch.direction
+    shapes: dict[NotchKind, tuple[tuple[Floats, ...], ...]] = {
+        "slit": ((foot, tip),),
+        "v": ((foot - half, tip, foot + half),),
+        "t": ((foot, tip), (tip - half, tip + half)),
+        "castle": ((foot - half, tip - half, tip + half, foot + half),),
+        "check": ((foot, tip, foot + half),),
+        "u": (
+            (
+                foot - half,
+                foot - half + shoulder,
+                tip - 0.5 * half,
+                tip + 0.5 * half,
+                foot + half + shoulder,
+                foot + half,
+            ),
+        ),
+    }
+    return tuple(frozen(np.vstack(line)) for line in shapes[notch.kind])
+
+
+def _labels(piece: PatternPiece) -> tuple[Label, ...]:
+    """Returns the texts, centred on a roomy spot and as large as fits there, within limits."""
+    region = shapely.Polygon(piece.sew_line)
+    circle = shapely.maximum_inscribed_circle(region, piece.tolerance)
+    middle, radius = circle.coords[0], circle.length
+    centre = region.centroid
+    if region.contains(centre) and region.exterior.distance(centre) > 0.8 * radius:
+        middle = centre.coords[0]
+    lines = piece.texts
+    longest = max(map(len, lines))
+    room = min(2.0 * radius / (1.5 * len(lines)), _chord(region, middle) / longest)
+    height = float(np.clip(room, settings.TEXT_HEIGHT_MIN, settings.TEXT_HEIGHT))
+    top = np.array(middle) + np.array((-0.45 * height * longest, 0.75 * height * len(lines)))
+    return tuple(
+        Label("text", text, frozen(top - np.array((0.0, (1.5 * row + 1.0) * height))), height)
+        for row, text in enumerate(lines)
+    )
+
+
+def _chord(region: shapely.Polygon, middle: tuple[float, float]) -> float:
+    """Returns the length in mm of the level line through a point, as far as it stays inside."""
+    low, _, high, _ = region.bounds
+    level = shapely.LineString(((low - 1.0, middle[1]), (high + 1.0, middle[1])))
+    parts = shapely.get_parts(shapely.intersection(region, level))
+    nearest = min(parts, key=lambda part: part.distance(shapely.Point(middle)))
+    return float(nearest.length)

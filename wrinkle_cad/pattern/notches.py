@@ -1,0 +1,97 @@
+"""Where notches stand on a rail: one rule for the pattern and for the edge it is sewn to.
+
+A position is an arc length along the rail in space. The pattern's P seam and the opening's P edge
+are equally long, so equal arc lengths are points that meet when sewn.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from wrinkle_cad import settings
+from wrinkle_cad.errors import InputError
+
+from .options import NotchRule
+from .outline import turns
+from .piece import Floats
+
+
+def notch_arcs(
+    length: float,
+    rule: NotchRule,
+    *,
+    corners: Sequence[float] = (),
+    clearance: float = settings.NOTCH_CLEARANCE,
+) -> Floats:
+    """Returns the arc lengths of the notches on a rail, (k,) mm from its start, ascending.
+
+    Counted and spaced notches that would stand too near a corner move away from it; where there
+    is no room between two corners they are left out, so fewer may come back.
+
+    Args:
+        length: mm, of the rail in space.
+        rule: how many, how far apart, or where.
+        corners: mm; arc lengths of corners between the ends, which are corners themselves.
+        clearance: mm; least distance from a corner.
+
+    Raises:
+        InputError: a position given by the user lies on a corner or off the rail.
+    """
+    stops = np.unique(np.concatenate(([0.0], np.asarray(corners, dtype=np.float64), [length])))
+    if rule.at:
+        arcs = np.unique(np.array(rule.at, dtype=np.float64))
+        nearest = np.abs(arcs[:, None] - stops).min(axis=1)
+        outside = (arcs < 0.0) | (arcs > length)
+        for i in np.flatnonzero(outside | (nearest < clearance)):
+            raise InputError(
+                f"notch at {arcs[i]:g} mm - {nearest[i]:g} mm from a corner or end of a rail of "
+                f"{length:g} mm - at least {clearance:g} mm, on the rail - move it"
+            )
+        return arcs
+    count = rule.count
+    if rule.spacing is not None:
+        count = max(0, round(length / rule.spacing) - 1)
+    arcs = length * np.arange(1, count + 1) / (count + 1)
+    return _off_corners(arcs, stops, clearance)
+
+
+def _off_corners(arcs: Floats, stops: Floats, clearance: float) -> Floats:
+    after = np.clip(np.searchsorted(stops, arcs, side="right"), 1, len(stops) - 1)
+    low, high = stops[after - 1] + clearance, stops[after] - clearance
+    fits = low <= high
+    moved: Floats = np.unique(np.clip(arcs[fits], low[fits], high[fits]))
+    if len(moved) < 2:
+        return moved
+    apart = np.concatenate(([True], np.diff(moved) >= clearance))
+    return moved[apart]
+
+
+def corner_arcs(line: Floats, arcs: Floats) -> Floats:
+    """Returns the arc lengths at which a flat rail has a corner, ends not counted.
+
+    Args:
+        line: (k, 2) mm, the flat rail.
+        arcs: (k,) mm, arc length in space at each of its points.
+    """
+    if len(line) < 3:
+        return np.zeros(0)
+    inner: Floats = arcs[1:-1][np.abs(turns(line)) > settings.PATTERN_CORNER]
+    return inner
+
+
+def points_at(line: Floats, arcs: Floats, at: Floats) -> tuple[Floats, Floats]:
+    """Returns points (k, 2) mm and unit directions (k, 2) on a flat rail at given arc lengths.
+
+    Args:
+        line: (l, 2) mm.
+        arcs: (l,) mm, arc length in space at each of its points, ascending.
+        at: (k,) mm, on the rail.
+    """
+    i = np.clip(np.searchsorted(arcs, at, side="right") - 1, 0, len(arcs) - 2)
+    step = line[i + 1] - line[i]
+    span = arcs[i + 1] - arcs[i]
+    share = np.divide(at - arcs[i], span, out=np.zeros_like(span), where=span > 0.0)
+    lengths = np.linalg.norm(step, axis=1)
+    return line[i] + share[:, None] * step, step / np.where(lengths > 0.0, lengths, 1.0)[:, None]

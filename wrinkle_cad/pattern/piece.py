@@ -1,0 +1,195 @@
+"""PatternPiece: one flat piece of material with everything that is cut into or drawn on it.
+
+Frame: millimetres, x along the strip, y across, right side up: P below, Q above, and the first
+point of P at the origin. A mirrored piece (the other foot) has Q below and says so.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+import numpy.typing as npt
+
+from wrinkle_cad.findings import Finding
+
+from .options import Hand, NotchKind, PerSide
+
+Floats = npt.NDArray[np.float64]
+Ints = npt.NDArray[np.int8]
+Bools = npt.NDArray[np.bool_]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Notch:
+    """A mark at the cut line that meets its partner on the piece sewn to it.
+
+    Attributes:
+        side: index into ``SIDES``.
+        arc: mm along the rail in space, from the rail's start (for an end: along the ruling
+            from P). The partner stands at the same arc.
+        seam: (2,) mm, its foot on the sew line.
+        position: (2,) mm, on the cut line.
+        direction: (2,) unit vector from the cut line into the piece.
+        depth, width: mm. ``kind``: its form.
+    """
+
+    side: int
+    arc: float
+    seam: Floats
+    position: Floats
+    direction: Floats
+    depth: float
+    width: float
+    kind: NotchKind
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Outline:
+    """A closed polygon, counter-clockwise, without a repeated last vertex.
+
+    Attributes:
+        points: (k, 2) mm.
+        sides: (k,) int8, ``SIDES`` index of the segment that starts at each vertex.
+        corners: (k,) bool, True at turn points, False where the outline is curved.
+    """
+
+    points: Floats
+    sides: Ints
+    corners: Bools
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class PatternPiece:
+    """One piece of a pattern; every array is read-only and in mm.
+
+    Attributes:
+        name, size, quantity, material, tolerance: as the texts say.
+        cut: outline to be cut. ``sew``: outline to be sewn, inside or on the cut line.
+        cut_outs: (k, 2) polygons each, cut inside the cut line.
+        widths: allowance of each side in the order of ``SIDES``.
+        notches: sorted by side, then by arc.
+        grain_line: (2, 2) from tail to head. ``stretch_line``: the same or None.
+        rulings: (r, 2, 2) from P to Q. ``ruling_fold``: (r,) rad, positive for a mountain as
+            seen from the right side, negative for a valley.
+        drill_holes: (h, 2) centres.
+        p_span, q_span: (first, last) mm along the rails in space that this piece covers.
+        hand: the foot it is for. ``is_mirrored``: made by mirroring the strip.
+        findings: what was noticed while making it.
+    """
+
+    name: str
+    size: str
+    quantity: int
+    material: str
+    tolerance: float
+    cut: Outline
+    sew: Outline
+    cut_outs: tuple[Floats, ...]
+    widths: PerSide
+    notches: tuple[Notch, ...]
+    grain_line: Floats
+    stretch_line: Floats | None
+    rulings: Floats
+    ruling_fold: Floats
+    drill_holes: Floats
+    p_span: tuple[float, float]
+    q_span: tuple[float, float]
+    hand: Hand | None = None
+    is_mirrored: bool = False
+    findings: tuple[Finding, ...] = ()
+
+    @property
+    def cut_line(self) -> Floats:
+        """(k, 2) mm, the outline to be cut, closed without a repeated vertex."""
+        return self.cut.points
+
+    @property
+    def sew_line(self) -> Floats:
+        """(k, 2) mm, the outline to be sewn, closed without a repeated vertex."""
+        return self.sew.points
+
+    @property
+    def has_allowance(self) -> bool:
+        """Whether the cut line differs from the sew line anywhere."""
+        return any(width > 0.0 for width in self.widths)
+
+    @property
+    def texts(self) -> tuple[str, ...]:
+        """What is written on the piece, line by line."""
+        lines = [self.name, f"SIZE {self.size}", f"QUANTITY {self.quantity}"]
+        if self.material:
+            lines.append(f"MATERIAL {self.material}")
+        lines.append(f"UNITS MM, CHORD TOLERANCE {self.tolerance:g} MM")
+        return tuple(lines)
+
+    def moved(self, offset: Floats) -> PatternPiece:
+        """Returns the piece shifted by ``offset``: (2,) mm."""
+        return _mapped(self, np.array([1.0, 1.0]), offset)
+
+    def mirrored(self, *, name: str, hand: Hand) -> PatternPiece:
+        """Returns the piece for the other foot: y turned over, outlines kept counter-clockwise.
+
+        Mountains stay mountains: the strip for the other foot is mirrored in space as well.
+        """
+        turned = _mapped(self, np.array([1.0, -1.0]), np.zeros(2))
+        return replace(
+            turned,
+            name=name,
+            hand=hand,
+            cut=_reversed(turned.cut),
+            sew=_reversed(turned.sew),
+            cut_outs=tuple(frozen(outline[::-1]) for outline in turned.cut_outs),
+            is_mirrored=not self.is_mirrored,
+        )
+
+
+def frozen(points: npt.ArrayLike) -> Floats:
+    """Returns ``points`` as a read-only float array of its own."""
+    array = np.array(points, dtype=np.float64)
+    array.flags.writeable = False
+    return array
+
+
+def make_outline(points: npt.ArrayLike, sides: npt.ArrayLike, corners: npt.ArrayLike) -> Outline:
+    """Returns an outline with read-only arrays: (k, 2) mm, (k,) side indices, (k,) bool."""
+    side_array = np.array(sides, dtype=np.int8)
+    corner_array = np.array(corners, dtype=np.bool_)
+    side_array.flags.writeable = False
+    corner_array.flags.writeable = False
+    return Outline(frozen(points), side_array, corner_array)
+
+
+def _reversed(outline: Outline) -> Outline:
+    return make_outline(
+        outline.points[::-1], np.roll(outline.sides[::-1], -1), outline.corners[::-1]
+    )
+
+
+def _mapped(piece: PatternPiece, scale: Floats, offset: Floats) -> PatternPiece:
+    def placed(points: Floats) -> Floats:
+        return frozen(points * scale + offset)
+
+    def placed_outline(outline: Outline) -> Outline:
+        return make_outline(placed(outline.points), outline.sides, outline.corners)
+
+    notches = tuple(
+        replace(
+            notch,
+            seam=placed(notch.seam),
+            position=placed(notch.position),
+            direction=frozen(notch.direction * scale),
+        )
+        for notch in piece.notches
+    )
+    return replace(
+        piece,
+        cut=placed_outline(piece.cut),
+        sew=placed_outline(piece.sew),
+        cut_outs=tuple(placed(outline) for outline in piece.cut_outs),
+        notches=notches,
+        grain_line=placed(piece.grain_line),
+        stretch_line=None if piece.stretch_line is None else placed(piece.stretch_line),
+        rulings=placed(piece.rulings),
+        drill_holes=placed(piece.drill_holes),
+    )
