@@ -39,6 +39,9 @@ INFLECTION_SAMPLES: Final = 2
 INFLECTION_SAGITTAS: Final = 1.0
 """Neighbours share a tangent plane if no further from it than this many typical sagittas."""
 
+TWIST_PER_FOLD: Final = 0.5
+"""A gap is twist, not a crease, if more than this share of its largest fold is undone again."""
+
 SHORTEST_SEGMENT_PER_LENGTH: Final = 1e-6
 """No sampled segment is shorter than this share of its curve's length."""
 

@@ -16,7 +16,7 @@ _MODULE_OF: Final = {
     "Triangulation": "triangulation",
     "Unrolling": "unrolling",
     "find_gaps": "gaps",
-    "invalid_lengths": "gaps",
+    "covered_lengths": "gaps",
     "sample_curve": "sampling",
     "triangulate": "triangulation",
     "unroll": "unrolling",
@@ -24,10 +24,10 @@ _MODULE_OF: Final = {
     "validity_matrix": "convexity",
 }
 
-__all__ = sorted(_MODULE_OF)  # noqa: PLE0605 - names are resolved by __getattr__
+__all__ = sorted(_MODULE_OF)
 
 
-def __getattr__(name: str) -> Any:  # noqa: ANN401 - whatever the module exports
+def __getattr__(name: str) -> Any:
     if name not in _MODULE_OF:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
     value = getattr(import_module(f"{__name__}.{_MODULE_OF[name]}"), name)

@@ -1,4 +1,4 @@
-"""The one way this package compiles: with numba, off the interpreter lock, kept on disk if possible."""
+"""How this package compiles: with numba, off the interpreter lock, kept on disk if possible."""
 
 from __future__ import annotations
 

@@ -28,7 +28,7 @@ def _supports(view: Floats, j: int, neighbour: int, planarity: float) -> bool:
         lowest = min(lowest, side)
         highest = max(highest, side)
     slack = planarity * np.sqrt(x * x + y * y)
-    return lowest >= -slack or highest <= slack
+    return bool(lowest >= -slack or highest <= slack)
 
 
 @compiled

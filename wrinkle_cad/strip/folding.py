@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 import numpy.typing as npt
 
-from ..settings import STEEPEST_HALF_FOLD
+from wrinkle_cad.settings import STEEPEST_HALF_FOLD
+
 from .compiled import compiled
 from .sightlines import BEFORE_P, NEXT_P
 
@@ -20,6 +23,19 @@ triangles over it; |2 tan(fold/2)| is the discrete curvature of Grinspun et al.,
 Tang. A fold of 180 degrees costs nothing there, and the two ends of a strip differ."""
 
 _STEEPEST = STEEPEST_HALF_FOLD
+
+
+class StepCosts(NamedTuple):
+    """What leaving each of n bridges costs, by the step after it and the one before it."""
+
+    bending: Floats
+    """(4, n) float64; bending energy at the bridge; row 2 * earlier step + later step."""
+    fold_backs: Floats
+    """(4, n) float64; rows as in bending; 1.0 for a fold of 180 degrees, else 0.0."""
+    degenerate: Floats
+    """(2, n) float64; 1.0 if the later step's triangle has no area, else 0.0."""
+    area: Floats
+    """(2, n) float64, mm2; of the later step's triangle."""
 
 
 @compiled
@@ -71,17 +87,22 @@ def fold_cost(
 
 
 @compiled
+def new_costs(count: int) -> StepCosts:
+    """Returns room for the costs of leaving so many bridges."""
+    return StepCosts(
+        np.empty((4, count)), np.empty((4, count)), np.empty((2, count)), np.empty((2, count))
+    )
+
+
+@compiled
 def cost_row(
     view: Floats,
     banks: Floats,
     nothing: float,
     energy: int,
-    bending: Floats,
-    fold_backs: Floats,
-    degenerate: Floats,
-    area: Floats,
+    costs: StepCosts,
 ) -> None:
-    """Writes what leaving each bridge of a view costs, by the steps before and after it.
+    """Writes what leaving each bridge of a view costs.
 
     Args:
         view: (9, n) float64, mm; bridges as look_along fills them in.
@@ -89,11 +110,9 @@ def cost_row(
             on Q; zero where there is none.
         nothing: mm; round-off.
         energy: HINGE or PAPER.
-        bending: (4, n) float64; written; row 2 * earlier step + later step.
-        fold_backs: (4, n) float64; written; rows as in bending; 1.0 for a fold of 180 degrees.
-        degenerate: (2, n) float64; written; 1.0 if the triangle of the later step has no area.
-        area: (2, n) float64, mm2; written; of the triangle of the later step.
+        costs: written.
     """
+    bending, fold_backs, degenerate, area = costs
     for j in range(view.shape[1]):
         length = view[0, j]
         for later in range(2):

@@ -17,10 +17,11 @@ from collections.abc import Sequence
 import numpy as np
 import numpy.typing as npt
 
-from ..errors import InputError
+from wrinkle_cad.errors import InputError
+
 from .compiled import compiled
 from .convexity import judge_row
-from .folding import cost_row
+from .folding import StepCosts, cost_row, new_costs
 from .sightlines import VIEW_ROWS, bank_lengths, look_along, padded_banks
 
 Floats = npt.NDArray[np.float64]
@@ -90,10 +91,7 @@ def _decide_row(
     is_last_row: bool,
     view: Floats,
     valid: npt.NDArray[np.bool_],
-    bending: Floats,
-    fold_backs: Floats,
-    degenerate: Floats,
-    area: Floats,
+    costs: StepCosts,
     ahead: Floats,
     choices: npt.NDArray[np.uint8],
 ) -> None:
@@ -103,6 +101,7 @@ def _decide_row(
     end; on return those from this row's. Bit 0 of a choice is the step to take (0: P) after
     a P-step, bit 1 that after a Q-step.
     """
+    bending, fold_backs, degenerate, area = costs
     parts = len(weights)
     last = view.shape[1] - 1
     to_end = np.zeros((2, parts))
@@ -153,8 +152,7 @@ def _decide_all(
     m, n = p.shape[0], q.shape[1]
     view = np.empty((VIEW_ROWS, n))
     valid = np.empty(n, dtype=np.bool_)
-    bending, fold_backs = np.empty((4, n)), np.empty((4, n))
-    degenerate, area = np.empty((2, n)), np.empty((2, n))
+    costs = new_costs(n)
     banks = np.empty((4, n))
     banks[2] = bank_lengths(q_banks[:, :-1])
     banks[3] = bank_lengths(q_banks[:, 1:])
@@ -165,19 +163,8 @@ def _decide_all(
         banks[0], banks[1] = p_lengths[i], p_lengths[i + 1]
         look_along(p[i], p_banks[:, i : i + 2], q, q_banks, view)
         judge_row(view, planarity, valid)
-        cost_row(view, banks, nothing, energy, bending, fold_backs, degenerate, area)
-        _decide_row(
-            weights,
-            i == m - 1,
-            view,
-            valid,
-            bending,
-            fold_backs,
-            degenerate,
-            area,
-            ahead,
-            choices[i],
-        )
+        cost_row(view, banks, nothing, energy, costs)
+        _decide_row(weights, i == m - 1, view, valid, costs, ahead, choices[i])
     return choices
 
 

@@ -7,7 +7,9 @@ from itertools import combinations
 import numpy as np
 import numpy.typing as npt
 
-from ..settings import INFLECTION_SAMPLES, INFLECTION_SAGITTAS
+from wrinkle_cad.settings import INFLECTION_SAGITTAS, INFLECTION_SAMPLES
+
+from .path import Path
 
 Floats = npt.NDArray[np.float64]
 Bools = npt.NDArray[np.bool_]
@@ -34,12 +36,11 @@ def plane_misfit(view: Floats) -> Floats:
                 side.max(axis=0), size, where=size > 0.0, out=np.full_like(size, np.inf)
             )
             misfit = np.minimum(misfit, distance)
-    return np.where(np.isinf(misfit), 0.0, misfit)
+    misfit[np.isinf(misfit)] = 0.0
+    return misfit
 
 
-def inflection_bridges(
-    bridges: npt.NDArray[np.int64], valid: Bools, fold: Floats, view: Floats, sagitta: float
-) -> Bools:
+def inflection_bridges(path: Path, sagitta: float) -> Bools:
     """Returns which invalid interior bridges stand at a change of bending and are no defect.
 
     Such a bridge has a valid one bent up before it and a valid one bent down behind it (or the
@@ -47,15 +48,13 @@ def inflection_bridges(
     neighbours share a tangent plane to within what the sampling can tell: the typical sagitta.
 
     Args:
-        bridges: (k, 2) int64; i, j of each bridge on the path.
-        valid: (k,) bool; locally convex bridges.
-        fold: (k-2,) float64, rad; signed fold angles of the interior bridges.
-        view: (9, k) float64, mm; the bridges seen along themselves.
+        path: the bridges, in order.
         sagitta: mm; typical sagitta of the rails.
 
     Returns:
         (k,) bool; a subset of the invalid interior bridges.
     """
+    bridges, valid, fold = path.bridges, path.valid, path.fold
     reach = INFLECTION_SAMPLES
     first = np.minimum(*(np.searchsorted(side, side - reach, "left") for side in bridges.T))
     stop = np.maximum(*(np.searchsorted(side, side + reach, "right") for side in bridges.T))
@@ -68,13 +67,13 @@ def inflection_bridges(
         before.append(count[here] > count[first])
         after.append(count[stop] > count[here + 1])
     changes = (before[0] & after[1]) | (before[1] & after[0])
-    candidate = changes & ~valid
+    candidate: Bools = changes & ~valid
     candidate[[0, -1]] = False
-    candidate[candidate] = plane_misfit(view[:, candidate]) <= INFLECTION_SAGITTAS * sagitta
+    candidate[candidate] = plane_misfit(path.view[:, candidate]) <= INFLECTION_SAGITTAS * sagitta
     return candidate
 
 
-def fan_aware_twist(steps: npt.NDArray[np.int8], valid: Bools, fold: Floats) -> Floats:
+def fan_aware_twist(path: Path) -> Floats:
     """Returns how much the surface's normal turns along each bridge.
 
     Bridges between two steps of the same kind run through one sample: a fan, which is a piece of a
@@ -84,23 +83,18 @@ def fan_aware_twist(steps: npt.NDArray[np.int8], valid: Bools, fold: Floats) -> 
     is not taken for it); a turn that stays is bending. A locally convex bridge has a plane that
     touches both rails, hence no twist.
 
-    Args:
-        steps: (k-1,) int8; the kinds of step of the path.
-        valid: (k,) bool; locally convex bridges.
-        fold: (k-2,) float64, rad; signed fold angles of the interior bridges.
-
     Returns:
         (k,) float64, rad, not negative.
     """
-    twist = np.zeros(valid.shape[0])
-    turns = np.flatnonzero(steps[1:] != steps[:-1])
+    twist = np.zeros(path.valid.shape[0])
+    turns = np.flatnonzero(path.steps[1:] != path.steps[:-1])
     if turns.size > 1:
-        angle = fold[turns]
+        angle = path.fold[turns]
         into, out = angle[:-1], angle[1:]
         undone = np.where(into * out < 0.0, np.minimum(np.abs(into), np.abs(out)), 0.0)
         # Bridge k+1 has fold k; a fan lies from one turning bridge to the next.
         run = np.repeat(undone, np.diff(turns))
         twist[turns[0] + 1 : turns[-1] + 1] = run
         twist[turns[1:] + 1] = np.maximum(undone, np.append(undone[1:], 0.0))
-    twist[valid] = 0.0
+    twist[path.valid] = 0.0
     return twist

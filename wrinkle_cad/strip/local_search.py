@@ -2,8 +2,8 @@
 
 What the paper leaves open is decided so:
 
-- The nearest valid bridge of (i, j) is the one with the smallest (i'-i) + (j'-j), i' > i and j' > j;
-  of several, the one with the largest i'. The last bridge counts as valid, since it is in every
+- The nearest valid bridge of (i, j) has i' > i, j' > j and the smallest (i'-i) + (j'-j); of several
+  it is the one with the largest i'. The last bridge counts as valid, since it is in every
   triangulation, so a nearest one always exists.
 - The fold at the first bridge costs nothing, so there the P-step is taken. Of two steps that
   bend equally the P-step is taken everywhere.
@@ -18,7 +18,7 @@ import numpy.typing as npt
 
 from .compiled import compiled
 from .convexity import judge_row
-from .folding import cost_row
+from .folding import cost_row, new_costs
 from .sightlines import VIEW_ROWS, bank_lengths, look_along, padded_banks
 
 Floats = npt.NDArray[np.float64]
@@ -47,18 +47,17 @@ def _easier_step(rails: Rails, i: int, j: int, earlier: int, nothing: float, ene
     """The step that bends bridge (i, j) less, after the earlier one that arrived there."""
     view = np.empty((VIEW_ROWS, 1))
     banks = np.empty((4, 1))
-    bending, fold_backs = np.empty((4, 1)), np.empty((4, 1))
-    degenerate, area = np.empty((2, 1)), np.empty((2, 1))
+    costs = new_costs(1)
     _look(rails, i, j, view)
     banks[:2, 0] = bank_lengths(rails[1][:, i : i + 2])
     banks[2:, 0] = bank_lengths(rails[3][:, j : j + 2])
-    cost_row(view, banks, nothing, energy, bending, fold_backs, degenerate, area)
+    cost_row(view, banks, nothing, energy, costs)
     row = 2 * earlier
-    p_count = degenerate[0, 0] + fold_backs[row, 0]
-    q_count = degenerate[1, 0] + fold_backs[row + 1, 0]
+    p_count = costs.degenerate[0, 0] + costs.fold_backs[row, 0]
+    q_count = costs.degenerate[1, 0] + costs.fold_backs[row + 1, 0]
     if p_count != q_count:
         return 0 if p_count < q_count else 1
-    return 0 if bending[row, 0] <= bending[row + 1, 0] else 1
+    return 0 if costs.bending[row, 0] <= costs.bending[row + 1, 0] else 1
 
 
 @compiled

@@ -5,13 +5,14 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 
-from ..errors import InputError
-from ..settings import (
+from wrinkle_cad.errors import InputError
+from wrinkle_cad.settings import (
     LARGEST_COORDINATE,
     PLANARITY_FLOOR_PER_COORDINATE,
     PLANARITY_PER_TOLERANCE,
     ROUND_OFF_PER_COORDINATE,
 )
+
 from .compiled import compiled
 
 Floats = npt.NDArray[np.float64]
@@ -40,8 +41,8 @@ def _checked_rail(points: npt.ArrayLike, name: str) -> Floats:
         ) from error
     if rail.ndim != 2 or rail.shape[1] != 3 or rail.shape[0] < 2:
         raise InputError(
-            f"directrix {name} - an array of shape {rail.shape} - shape (k, 3) with k >= 2 is needed"
-            " - pass one x, y, z per sample"
+            f"directrix {name} - shape {rail.shape} - shape (k, 3) with k >= 2 is needed -"
+            " pass one x, y, z per sample"
         )
     bad = np.flatnonzero(~np.isfinite(rail).all(axis=1))
     if bad.size:
@@ -79,7 +80,8 @@ def sagittas(rail: Floats) -> Floats:
         (arm * chord).sum(axis=1), length * length, where=length > 0.0, out=length * 0
     )
     off = arm - np.clip(along, 0.0, 1.0)[:, None] * chord
-    return np.sqrt((off * off).sum(axis=1))
+    result: Floats = np.sqrt((off * off).sum(axis=1))
+    return result
 
 
 def typical_sagitta(p: Floats, q: Floats) -> float:

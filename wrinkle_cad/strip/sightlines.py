@@ -37,7 +37,8 @@ def padded_banks(rail: Floats) -> Floats:
 @compiled
 def bank_lengths(banks: Floats) -> Floats:
     """Returns the length in mm of each column of padded_banks."""
-    return np.sqrt(banks[0] ** 2 + banks[1] ** 2 + banks[2] ** 2)
+    lengths: Floats = np.sqrt(banks[0] ** 2 + banks[1] ** 2 + banks[2] ** 2)
+    return lengths
 
 
 @compiled

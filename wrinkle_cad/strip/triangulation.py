@@ -4,23 +4,24 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Final
+from typing import Any, Final
 
 import numpy as np
 import numpy.typing as npt
 
-from ..errors import InputError
-from ..settings import CRITERIA, ENERGY, SEARCH
-from .convexity import judge_row
-from .folding import ENERGIES, cost_row, fold_angles
-from .global_search import best_steps, weights_of
+from wrinkle_cad.errors import InputError
+from wrinkle_cad.settings import CRITERIA, ENERGY, SEARCH
+
+from .folding import ENERGIES
+from .global_search import Weights, best_steps, weights_of
 from .inflection import fan_aware_twist, inflection_bridges
 from .local_search import local_steps
+from .path import walk
 from .rails import check_rails_apart, checked_planarity, checked_rails, round_off, typical_sagitta
-from .sightlines import VIEW_ROWS, bank_lengths, look_along_path, padded_banks
 
 Floats = npt.NDArray[np.float64]
 Bools = npt.NDArray[np.bool_]
+Steps = npt.NDArray[np.int8]
 
 P_STEP: Final = 0
 """One bank edge forward on P: triangle p[i] p[i+1] q[j]."""
@@ -80,7 +81,7 @@ class Triangulation:
     @property
     def interior_count(self) -> int:
         """Bridges between the first and the last."""
-        return self.bridges.shape[0] - 2
+        return len(self.bridges) - 2
 
     @property
     def invalid_count(self) -> int:
@@ -132,31 +133,46 @@ def triangulate(
     limit = checked_planarity(p, q, planarity)
     nothing = round_off(p, q)
     check_rails_apart(p, q, limit)
-    if search == "global":
-        steps = best_steps(p, q, weights, planarity=limit, nothing=nothing, energy=ENERGIES[energy])
-    elif search == "local" and names[0] in ("invalid", "bending"):
-        steps = local_steps(
-            p,
-            q,
-            is_developable=names[0] == "invalid",
-            planarity=limit,
-            nothing=nothing,
-            energy=ENERGIES[energy],
-        )
-    elif search == "local":
-        raise InputError(
-            f'search - "local" with criteria that start with {names[0]} - they must start with invalid'
-            ' or bending - use search="global"'
-        )
-    else:
-        raise InputError(f"search - {search!r} - one of global, local - choose one")
+    steps = _search(
+        p, q, names, weights, search, planarity=limit, nothing=nothing, energy=ENERGIES[energy]
+    )
     return measured(p, q, steps, planarity=limit, criteria=names, search=search, energy=energy)
+
+
+def _search(
+    p: Floats,
+    q: Floats,
+    criteria: tuple[str, ...],
+    weights: Weights,
+    search: str,
+    *,
+    planarity: float,
+    nothing: float,
+    energy: int,
+) -> Steps:
+    if search == "global":
+        return best_steps(p, q, weights, planarity=planarity, nothing=nothing, energy=energy)
+    if search != "local":
+        raise InputError(f"search - {search!r} - one of global, local - choose one")
+    if criteria[0] not in ("invalid", "bending"):
+        raise InputError(
+            f"search - local with criteria that start with {criteria[0]}"
+            " - they must start with invalid or bending - search globally"
+        )
+    return local_steps(
+        p,
+        q,
+        is_developable=criteria[0] == "invalid",
+        planarity=planarity,
+        nothing=nothing,
+        energy=energy,
+    )
 
 
 def measured(
     p: Floats,
     q: Floats,
-    steps: npt.NDArray[np.int8],
+    steps: Steps,
     *,
     planarity: float,
     criteria: tuple[str, ...],
@@ -177,56 +193,32 @@ def measured(
     Raises:
         InputError: all triangles have zero area.
     """
-    nothing = round_off(p, q)
-    bridges = np.zeros((steps.size + 1, 2), dtype=np.int64)
-    bridges[1:, 1] = np.cumsum(steps)
-    bridges[1:, 0] = np.arange(1, steps.size + 1) - bridges[1:, 1]
-    p_banks, q_banks = padded_banks(p), padded_banks(q)
-    view = look_along_path(p, p_banks, np.ascontiguousarray(q.T), q_banks, bridges)
-    banks = np.stack(
-        [
-            bank_lengths(side)[bridges[:, rail] + after]
-            for rail, side in ((0, p_banks), (1, q_banks))
-            for after in (0, 1)
-        ]
-    )
-    count = bridges.shape[0]
-    valid = np.empty(count, dtype=np.bool_)
-    judge_row(view, planarity, valid)
-    bending, fold_backs = np.empty((4, count)), np.empty((4, count))
-    degenerate, area = np.empty((2, count)), np.empty((2, count))
-    cost_row(view, banks, nothing, ENERGIES[energy], bending, fold_backs, degenerate, area)
-    leaving = np.arange(count - 1)
-    is_flat = degenerate[steps, leaving] > 0.0
-    if is_flat.all():
+    path = walk(p, q, steps, planarity=planarity, nothing=round_off(p, q), energy=ENERGIES[energy])
+    if path.is_flat.all():
         raise InputError(
             "strip - every triangle has zero area - at least one must have some"
             " - choose two curves that are apart"
         )
-    row = 2 * steps[:-1] + steps[1:]
-    bending_at = bending[row, leaving[1:]]
-    fold = fold_angles(view[:, 1:-1], steps)
-    fold[is_flat[:-1] | is_flat[1:]] = 0.0
-    fields = {
+    arrays: dict[str, Any] = {
         "p": p,
         "q": q,
-        "bridges": bridges,
-        "triangles": _triangles(bridges, steps, p.shape[0]),
+        "bridges": path.bridges,
+        "triangles": _triangles(path.bridges, steps, p.shape[0]),
         "steps": steps,
-        "valid": valid,
-        "inflection": inflection_bridges(bridges, valid, fold, view, typical_sagitta(p, q)),
-        "fold": fold,
-        "twist": fan_aware_twist(steps, valid, fold),
-        "bending_at": bending_at,
+        "valid": path.valid,
+        "inflection": inflection_bridges(path, typical_sagitta(p, q)),
+        "fold": path.fold,
+        "twist": fan_aware_twist(path),
+        "bending_at": path.bending_at,
     }
-    for array in fields.values():
+    for array in arrays.values():
         array.flags.writeable = False
     return Triangulation(
-        **fields,
-        bending=float(bending_at.sum()),
-        area=float(area[steps, leaving].sum()),
-        length=float(view[0].sum()),
-        degenerate_count=int(is_flat.sum() + fold_backs[row, leaving[1:]].sum()),
+        **arrays,
+        bending=float(path.bending_at.sum()),
+        area=path.area,
+        length=float(path.view[0].sum()),
+        degenerate_count=path.degenerate_count,
         planarity=planarity,
         criteria=criteria,
         search=search,
@@ -234,9 +226,7 @@ def measured(
     )
 
 
-def _triangles(
-    bridges: npt.NDArray[np.int64], steps: npt.NDArray[np.int8], m: int
-) -> npt.NDArray[np.int64]:
+def _triangles(bridges: npt.NDArray[np.int64], steps: Steps, m: int) -> npt.NDArray[np.int64]:
     i, j = bridges[:-1].T
     middle = np.where(steps == P_STEP, i + 1, m + j + 1)
     return np.stack((i, middle, m + j), axis=1)
