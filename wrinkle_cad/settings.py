@@ -202,6 +202,22 @@ BATCH_IN_FLIGHT: Final = 64
 BATCH_STARTS: Final = 3
 """A job whose worker is gone before the job begins is handed out this often in all."""
 
+RAILS_MEET: Final = 1e-5
+"""mm; rails that come this near at a bridge meet there, in one vertex."""
+
+THIN_FACE: Final = 5e-6
+"""mm; a face no wider than this is left out: its two long borders become one.
+
+A rail's edge then also stands for the chord beside it, so this bounds how far edges of a strip
+can be off their surfaces.
+"""
+
+THIN_FACE_PER_SIZE: Final = 5e-7
+"""... but no wider than this share of the strip's size, nor twice for rails to meet."""
+
+PLANE_GAP: Final = 2e-8
+"""mm; a curve and an apex within this of one plane make a planar face instead of a cone."""
+
 
 def planarity_from(tolerance: float) -> float:
     """Returns the planarity in mm that fits a chord tolerance in mm."""

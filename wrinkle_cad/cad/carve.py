@@ -1,0 +1,248 @@
+"""Carves the strip between two rails out of an upper (Fig. 11a of the paper)."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+from OCP.BRepExtrema import BRepExtrema_DistShapeShape
+from OCP.TopoDS import TopoDS_Edge, TopoDS_Face, TopoDS_Shape
+
+from .. import settings
+from ..errors import CadError, InputError
+from . import kernel
+from .border import border_chain, connected_groups, edge_middle, joined_faces
+from .directrix import Directrix, make_directrix, orient_alike
+from .opening import CarveRequest, Opening
+from .outline import (
+    Rail,
+    Side,
+    across_rail,
+    end_between,
+    faded_margin,
+    rail_on,
+    side_of,
+)
+from .projection import UpperFaces
+from .smooth import smooth_edge
+from .splitting import ShapeIndex, Split, split_faces
+
+Floats = NDArray[np.float64]
+STEP = "carve the upper"
+
+
+def carve(
+    upper: object,
+    p: object,
+    q: object,
+    *,
+    margin: float = 0.0,
+    fade: float = settings.FADE,
+    limit: float = settings.RAIL_OFF_UPPER,
+    allow_split: bool = False,
+) -> Opening:
+    """Cuts the strip between two rails out of an upper.
+
+    Rails that do not lie on the upper are projected onto it. Where both rails end on the upper's
+    border, so does the opening; elsewhere it ends along the projection of the straight end bridge.
+
+    Args:
+        upper: a face, shell, solid or compound of faces; sewn or not. It is not written to.
+        p: a rail: whatever ``make_directrix`` takes.
+        q: the other rail; run either way.
+        margin: mm; how far the opening reaches beyond the rails. The margin fades to 0 at the ends.
+        fade: the share of the rails, 0 to 0.5, over which the margin fades.
+        limit: mm; a rail further from the upper is refused.
+        allow_split: whether the opening may cut the upper in two.
+
+    Raises:
+        InputError: rails that cross, enclose no area or are too far from the upper; an opening that
+            cuts the upper in two; values out of range.
+        CadError: the kernel cannot split the upper, or areas do not add up.
+    """
+    _check_numbers(margin, fade, limit)
+    first, second, _ = orient_alike(make_directrix(p, name="P"), make_directrix(q, name="Q"))
+    request = CarveRequest(first, second, margin, fade, limit, allow_split)
+    return carve_shape(kernel.unwrap(upper), request, source=upper)
+
+
+def carve_shape(shape: TopoDS_Shape, request: CarveRequest, *, source: object = None) -> Opening:
+    """Cuts an opening into a shape of the kernel; see ``carve``."""
+    faces = UpperFaces(shape)
+    rails = (rail_on(faces, request.p, "P"), rail_on(faces, request.q, "Q"))
+    for rail, name in zip(rails, "PQ", strict=True):
+        _check_near(rail, name, request.limit)
+    across = (across_rail(rails[0], rails[1], ("P", "Q")), across_rail(rails[1], rails[0], ("Q", "P")))
+    on_border = _ends_on_border(shape, rails)
+    sides = _sides(faces, rails, across, request, on_border)
+    height = settings.RIBBON_PER_LENGTH * min(rail.length for rail in rails)
+    overrun = [tuple(height if ends else 0.0 for ends in on_border)] * 2 + [(0.0, 0.0)] * 2
+    split = split_faces(faces.faces, shape, sides, height, overrun[: len(sides)])
+    body, removed, origin = _divided(split)
+    _check_removed(removed, rails)
+    count = _check_whole(faces, body, request.allow_split)
+    chains = _chains(split, sides, removed, on_border, rails)
+    return Opening(
+        body_shape=joined_faces(body),
+        removed_shape=joined_faces(removed),
+        p_edges=chains[0],
+        q_edges=chains[1],
+        start_edges=chains[2],
+        end_edges=chains[3],
+        rail_p_curve=_rail_curve(rails[0], request.p),
+        rail_q_curve=_rail_curve(rails[1], request.q),
+        rails=rails,
+        across=across,
+        ends_on_border=on_border,
+        face_origin=origin,
+        distances=(float(rails[0].feet.distances.max()), float(rails[1].feet.distances.max())),
+        areas=_checked_areas(shape, body, removed),
+        body_count=count,
+        upper_shape=shape,
+        request=request,
+        source=source,
+    )
+
+
+def _sides(
+    faces: UpperFaces,
+    rails: tuple[Rail, Rail],
+    across: tuple[Floats, Floats],
+    request: CarveRequest,
+    on_border: tuple[bool, bool],
+) -> list[Side]:
+    sides = [
+        side_of(faces, rail, toward, faded_margin(rail.shares, request.margin, request.fade), name)
+        for rail, toward, name in zip(rails, across, "pq", strict=True)
+    ]
+    for at, name in ((0, "start"), (-1, "end")):
+        end = None if on_border[at] else end_between(faces, sides[0], sides[1], at, name)
+        if end is not None:
+            sides.append(end)
+    return sides
+
+
+def _check_numbers(margin: float, fade: float, limit: float) -> None:
+    for name, value, low, high in (
+        ("margin", margin, 0.0, np.inf),
+        ("fade", fade, settings.FADE_MIN, 0.5),
+        ("limit", limit, 0.0, np.inf),
+    ):
+        if not low <= value <= high or not np.isfinite(value):
+            raise InputError(f"{name} - found {value:g} - {low:g} to {high:g} is the range")
+
+
+def _check_near(rail: Rail, name: str, limit: float) -> None:
+    at = int(rail.feet.distances.argmax())
+    distance = float(rail.feet.distances[at])
+    if distance > limit:
+        raise InputError(
+            f"rail {name} - it leaves the upper by {distance:.3g} mm at"
+            f" {rail.shares[at] * rail.length:.4g} mm of its {rail.length:.4g} mm - the limit is"
+            f" {limit:.3g} mm - draw it nearer to the upper, or raise the limit"
+        )
+
+
+def _ends_on_border(shape: TopoDS_Shape, rails: tuple[Rail, Rail]) -> tuple[bool, bool]:
+    border = kernel.free_edges(shape)
+    if not border:
+        return False, False
+    held = kernel.make_compound(border)
+    reach = [settings.BORDER_REACH_PER_LENGTH * rail.length for rail in rails]
+
+    def reaches(at: int) -> bool:
+        gaps = [
+            BRepExtrema_DistShapeShape(kernel.make_vertex(rail.points[at]), held).Value()
+            for rail in rails
+        ]
+        return all(gap <= limit for gap, limit in zip(gaps, reach, strict=True))
+
+    return reaches(0), reaches(-1)
+
+
+def _divided(split: Split) -> tuple[list[TopoDS_Face], list[TopoDS_Face], tuple[int, ...]]:
+    body, removed, origin = [], [], []
+    for i, (group, inside) in enumerate(zip(split.pieces, split.is_inside, strict=True)):
+        for piece, is_inside in zip(group, inside, strict=True):
+            if is_inside:
+                removed.append(piece)
+            else:
+                body.append(piece)
+                origin.append(i)
+    return body, removed, tuple(origin)
+
+
+def _check_removed(removed: Sequence[TopoDS_Face], rails: tuple[Rail, Rail]) -> None:
+    if not removed:
+        raise InputError(
+            f"rails P and Q - of {rails[0].length:.4g} and {rails[1].length:.4g} mm, they cut no"
+            " piece out of the upper: their ends lie inside it and do not close, or run beyond it -"
+            " a closed outline is needed - end both on the upper, or both on its border"
+        )
+
+
+def _check_whole(faces: UpperFaces, body: Sequence[TopoDS_Face], allow_split: bool) -> int:
+    before, after = len(connected_groups(faces.faces)), len(connected_groups(body))
+    if after > before and not allow_split:
+        raise InputError(
+            f"opening - it cuts the upper into {after} parts, it had {before} - {before} is the"
+            " limit - end the rails inside the upper, or allow the split (allow_split=True)"
+        )
+    return after
+
+
+def _checked_areas(
+    shape: TopoDS_Shape, body: Sequence[TopoDS_Face], removed: Sequence[TopoDS_Face]
+) -> tuple[float, float, float]:
+    bound = settings.AREA_BALANCE / 10.0
+    whole, kept, cut = (
+        kernel.area_of(part, relative_error=bound)
+        for part in (shape, kernel.make_compound(body), kernel.make_compound(removed))
+    )
+    off = abs(kept + cut - whole) / whole
+    if off > settings.AREA_BALANCE:
+        raise CadError(
+            STEP,
+            f"body and removed part have {kept + cut:.9g} mm2, the upper {whole:.9g}: off by"
+            f" {off:.1e} of it - the limit is {settings.AREA_BALANCE:.0e} - move the rails a little",
+        )
+    return whole, kept, cut
+
+
+def _chains(
+    split: Split,
+    sides: Sequence[Side],
+    removed: Sequence[TopoDS_Face],
+    on_border: tuple[bool, bool],
+    rails: tuple[Rail, Rail],
+) -> list[tuple[TopoDS_Edge, ...]]:
+    """Returns the edges along P and Q and across both ends."""
+    named: dict[str, tuple[TopoDS_Edge, ...]] = {
+        side.name: tuple(cut.edge for cut in split.cuts if cut.side == i)
+        for i, side in enumerate(sides)
+    }
+    cut_edges = ShapeIndex(cut.edge for cut in split.cuts)
+    border = [
+        edge
+        for edge in kernel.free_edges(kernel.make_compound(removed))
+        if cut_edges.find(edge) < 0
+    ]
+    corners = np.array([[rail.points[at] for rail in rails] for at in (0, -1)])
+    middles = corners.mean(axis=1)
+    for at, name in ((0, "start"), (1, "end")):
+        if on_border[at]:
+            near = [
+                edge
+                for edge in border
+                if int(np.argmin(np.linalg.norm(middles - edge_middle(edge), axis=1))) == at
+            ]
+            named[name] = border_chain(near, corners[at, 0], corners[at, 1])
+    return [named.get(name, ()) for name in ("p", "q", "start", "end")]
+
+
+def _rail_curve(rail: Rail, given: Directrix) -> Directrix:
+    """Returns the rail itself if it lies on the upper, else a smooth curve through its feet."""
+    if float(rail.feet.distances.max()) <= settings.RAIL_ON_UPPER:
+        return given
+    return make_directrix(smooth_edge(rail.points), name=given.name)

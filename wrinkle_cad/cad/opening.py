@@ -1,0 +1,74 @@
+"""An upper with a strip cut out, and what was asked for when it was cut."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from OCP.TopoDS import TopoDS_Edge, TopoDS_Shape
+
+from .directrix import Directrix
+from .outline import Rail
+
+Floats = NDArray[np.float64]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class CarveRequest:
+    """What was asked for; enough to carve another body in the same way."""
+
+    p: Directrix
+    q: Directrix
+    margin: float
+    fade: float
+    limit: float
+    allow_split: bool
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Opening:
+    """An upper with the strip cut out."""
+
+    body_shape: TopoDS_Shape
+    """The upper without the strip: a shell, or a compound of shells that share no edge."""
+    removed_shape: TopoDS_Shape
+    """What was cut out, likewise."""
+    p_edges: tuple[TopoDS_Edge, ...]
+    """The opening's edges along P, edges of the body, in order and oriented along P."""
+    q_edges: tuple[TopoDS_Edge, ...]
+    """The opening's edges along Q."""
+    start_edges: tuple[TopoDS_Edge, ...]
+    """From P to Q at the start; edges of the body, or of the upper's border; none if they meet."""
+    end_edges: tuple[TopoDS_Edge, ...]
+    """From P to Q at the end."""
+    rail_p_curve: Directrix
+    """P as it lies on the upper."""
+    rail_q_curve: Directrix
+    """Q as it lies on the upper."""
+    rails: tuple[Rail, Rail]
+    """P and Q on the upper as points, with normals and tangents."""
+    across: tuple[Floats, Floats]
+    """Per rail (k, 3) unit vectors along the upper, towards the other rail."""
+    ends_on_border: tuple[bool, bool]
+    """Whether the strip starts, and ends, on the upper's own border."""
+    face_origin: tuple[int, ...]
+    """Per face of the body: which face of the upper it is, or is part of."""
+    distances: tuple[float, float]
+    """mm; how far P and Q were from the upper."""
+    areas: tuple[float, float, float]
+    """mm^2: upper, body, removed."""
+    body_count: int
+    """Connected parts of the body."""
+    upper_shape: TopoDS_Shape
+    """The upper as it was given."""
+    request: CarveRequest
+    """What was asked for."""
+    source: Any = None
+    """The object that the upper came in, whose names and colours the body keeps."""
+
+    @property
+    def area_balance(self) -> float:
+        """mm^2: body and removed together, less the upper."""
+        return self.areas[1] + self.areas[2] - self.areas[0]

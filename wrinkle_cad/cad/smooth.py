@@ -1,0 +1,21 @@
+"""One smooth B-spline through points."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+from OCP.BRepBuilderAPI import BRepBuilderAPI_MakeEdge
+from OCP.TopoDS import TopoDS_Edge
+from scipy.interpolate import make_interp_spline
+
+from .splines import make_curve
+
+Floats = NDArray[np.float64]
+
+
+def smooth_edge(points: Floats) -> TopoDS_Edge:
+    """Returns a cubic B-spline edge through (k, 3) points in mm, k >= 4, C2 throughout."""
+    steps = np.linalg.norm(np.diff(points, axis=0), axis=1)
+    spline = make_interp_spline(np.concatenate(([0.0], np.cumsum(steps))), points, k=3)
+    knots, counts = np.unique(spline.t, return_counts=True)
+    return BRepBuilderAPI_MakeEdge(make_curve(spline.c, knots, counts, 3)).Edge()
