@@ -172,6 +172,12 @@ SNIFFED_BYTES: Final = 2**16
 FILE_UNIT: Final = "mm"
 """The unit of a file that declares none."""
 
+STRIP_NAME: Final = "strip"
+"""The name of a strip whose curves do not name it."""
+
+LISTED_SHAPES: Final = 12
+"""Candidates that one message lists at most."""
+
 MESH_ANGLE: Final = 0.2
 """rad; how far the normals of neighbouring triangles of a mesh may differ on a curved face."""
 

@@ -203,6 +203,8 @@ def _tiny_edge(text: bytes) -> str | None:
         return None
     vertices = entities(text, rb"VERTEX_POINT")
     points = entities(text, rb"CARTESIAN_POINT")
+    units = length_units(text)
+    unit = units[0] if len(units) == 1 else "units"
     for number, body in edges.items():
         ends = [_location(int(end), vertices, points) for end in _REFERENCE.findall(body)[:2]]
         if len(ends) < 2 or ends[0] is None or ends[1] is None or ends[0] == ends[1]:
@@ -210,8 +212,8 @@ def _tiny_edge(text: bytes) -> str | None:
         length = math.dist(ends[0], ends[1])
         if length <= accuracy:
             return (
-                f"damaged: edge #{number} is {length:.2g} file units long, shorter than the"
-                f" accuracy of {accuracy:.2g} that the file declares - remove it or export again"
+                f"damaged: edge #{number} is {length:.2g} {unit} long, shorter than the accuracy"
+                f" of {accuracy:.2g} {unit} that the file declares - remove it or export again"
             )
     return None
 

@@ -1,0 +1,282 @@
+"""Which shapes of a file are P, Q and the upper, and why.
+
+By name: ``upper``; ``P`` and ``Q`` for one strip, ``<strip>:P`` and ``<strip>:Q`` for several.
+Names are compared exactly first and regardless of case then. Without such names exactly two free
+edges or wires are P and Q, and the only free face or shell is the upper. A choice by hand beats all
+of it. Nothing is compared here: whether P and Q are the same curve shows when they are measured.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Final
+
+from wrinkle_cad import settings
+from wrinkle_cad.errors import InputError
+
+from .shapes import CadFile, NamedShape
+
+_RAILS: Final = ("P", "Q")
+_UPPER: Final = "upper"
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class StripInput:
+    """The two curves of one strip."""
+
+    name: str
+    """What stands before ``:P`` in the file, else a default."""
+    p: NamedShape
+    """Directrix P."""
+    q: NamedShape
+    """Directrix Q."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Chosen:
+    """What a job works on."""
+
+    strips: tuple[StripInput, ...]
+    """At least one, in the order of their P in the file."""
+    upper: NamedShape | None
+    """The surface to carve, if the file has one."""
+    reasons: tuple[str, ...]
+    """For each choice one sentence: what was taken and why."""
+
+
+def choose_inputs(
+    cad_file: CadFile, *, p: str | None = None, q: str | None = None, upper: str | None = None
+) -> Chosen:
+    """Chooses the curves of every strip, and the upper.
+
+    Args:
+        cad_file: what the file holds.
+        p: name or index of directrix P, where the file's names do not say it; then there is one
+            strip.
+        q: likewise for Q.
+        upper: name or index of the upper; a solid is taken only when it is named here.
+
+    Raises:
+        InputError: there is no curve, no or more than one possible choice, or a name or index that
+            the file does not have; the message lists the candidates with their measures.
+    """
+    if p is None and q is None:
+        strips, reasons = _named_strips(cad_file)
+        if not strips:
+            strips, reasons = _only_two_curves(cad_file)
+    else:
+        strips, reasons = _strip_by_hand(cad_file, p, q)
+    surface, why = _upper(cad_file, upper, is_named=_has_convention(cad_file))
+    return Chosen(tuple(strips), surface, (*reasons, why))
+
+
+def _role(name: str) -> tuple[str, str] | None:
+    """Splits ``<strip>:P`` into the strip and ``P``; None for any other name."""
+    strip, _, rail = name.rpartition(":")
+    rail = rail.strip().upper()
+    return (strip.strip(), rail) if rail in _RAILS else None
+
+
+def _has_convention(cad_file: CadFile) -> bool:
+    return any(_role(curve.name) for curve in cad_file.curves()) or any(
+        shape.name.casefold() == _UPPER for shape in cad_file.shapes
+    )
+
+
+def _named_strips(cad_file: CadFile) -> tuple[list[StripInput], list[str]]:
+    strips, reasons = [], []
+    for name, found in _rails_by_strip(cad_file).items():
+        rail_p, rail_q = (_one_rail(cad_file, name, rail, found.get(rail, [])) for rail in _RAILS)
+        strips.append(StripInput(name or settings.STRIP_NAME, rail_p, rail_q))
+        reasons += [f"P is {rail_p}, by its name", f"Q is {rail_q}, by its name"]
+    return strips, reasons
+
+
+def _rails_by_strip(cad_file: CadFile) -> dict[str, dict[str, list[NamedShape]]]:
+    """Groups the named rails by strip; strips differing in case only are one if P or Q lacks."""
+    rails: dict[str, dict[str, list[NamedShape]]] = {}
+    for curve in cad_file.curves():
+        role = _role(curve.name)
+        if role is not None:
+            rails.setdefault(role[0], {}).setdefault(role[1], []).append(curve)
+    for name in [name for name, found in rails.items() if len(found) < len(_RAILS)]:
+        alike = [
+            other
+            for other, found in rails.items()
+            if other.casefold() == name.casefold() and len(found) < len(_RAILS)
+        ]
+        for other in alike[1:]:
+            for rail, curves in rails.pop(other).items():
+                rails[alike[0]].setdefault(rail, []).extend(curves)
+    return rails
+
+
+def _one_rail(cad_file: CadFile, strip: str, rail: str, found: list[NamedShape]) -> NamedShape:
+    wanted = f"{strip}:{rail}" if strip else rail
+    exact = [shape for shape in found if shape.name == wanted]
+    fits = exact or found
+    if len(fits) == 1:
+        return fits[0]
+    if not fits:
+        raise _fail(
+            cad_file,
+            f"no curve is called '{wanted}', its counterpart is there; found"
+            f" {_listed(cad_file.curves())} - name it or choose with --p and --q",
+        )
+    raise _fail(
+        cad_file,
+        f"{len(fits)} curves are called '{wanted}': {_listed(fits)} - join them to one wire,"
+        " or choose with --p and --q",
+    )
+
+
+def _only_two_curves(cad_file: CadFile) -> tuple[list[StripInput], list[str]]:
+    curves = cad_file.curves()
+    if len(curves) != 2:
+        raise _wrong_count(cad_file, curves)
+    first, second = curves
+    reasons = [
+        f"P is {first}, the first of the only two free curves",
+        f"Q is {second}, the second of the only two free curves",
+    ]
+    return [StripInput(settings.STRIP_NAME, first, second)], reasons
+
+
+def _wrong_count(cad_file: CadFile, curves: Sequence[NamedShape]) -> InputError:
+    if not curves:
+        return _fail(
+            cad_file,
+            f"no curves: the file holds {_summary(cad_file)}, a strip needs two free edges or"
+            " wires P and Q - add them to the file",
+        )
+    if len(curves) == 1:
+        return _fail(
+            cad_file,
+            f"only one curve: {curves[0]}, a strip needs two free edges or wires P and Q"
+            " - add the other one to the file",
+        )
+    return _fail(
+        cad_file,
+        f"{len(curves)} free curves and none is called P or Q: {_listed(curves)}"
+        " - choose two with --p and --q, or name them",
+    )
+
+
+def _strip_by_hand(
+    cad_file: CadFile, p: str | None, q: str | None
+) -> tuple[list[StripInput], list[str]]:
+    chosen_p = None if p is None else _picked(cad_file, p, "p")
+    chosen_q = None if q is None else _picked(cad_file, q, "q")
+    rail_p = chosen_p or _counterpart(cad_file, chosen_q, "P")
+    rail_q = chosen_q or _counterpart(cad_file, chosen_p, "Q")
+    for rail, option in ((rail_p, "p"), (rail_q, "q")):
+        if not rail.is_curve:
+            raise _fail(
+                cad_file,
+                f"--{option} chooses {rail}, a rail is an edge or a wire; found"
+                f" {_listed(cad_file.curves()) or 'no curves'} - choose one of these",
+            )
+    if rail_p is rail_q:
+        raise _fail(cad_file, f"--p and --q both choose {rail_p} - choose two curves")
+    role = _role(rail_p.name)
+    name = (role[0] if role else "") or settings.STRIP_NAME
+    reasons = [
+        f"P is {rail_p}, {'as chosen' if p is not None else 'the counterpart of the chosen Q'}",
+        f"Q is {rail_q}, {'as chosen' if q is not None else 'the counterpart of the chosen P'}",
+    ]
+    return [StripInput(name, rail_p, rail_q)], reasons
+
+
+def _counterpart(cad_file: CadFile, other: NamedShape | None, rail: str) -> NamedShape:
+    """Finds the rail that was not chosen: by its name, else as the only other curve."""
+    rest = [curve for curve in cad_file.curves() if curve is not other]
+    role = _role(other.name) if other is not None else None
+    strip = role[0] if role else ""
+    named = [
+        curve
+        for curve in rest
+        if (found := _role(curve.name)) and found[0] == strip and found[1] == rail
+    ]
+    for fits in (named, rest):
+        if len(fits) == 1:
+            return fits[0]
+    raise _fail(
+        cad_file,
+        f"only one rail is chosen; {rail} could be {_listed(rest) or 'none of the shapes'}"
+        f" - choose it with --{rail.lower()}",
+    )
+
+
+def _picked(cad_file: CadFile, text: str, option: str) -> NamedShape:
+    """Finds the one shape that a name or an index means."""
+    shapes = cad_file.shapes
+    wanted = text.strip()
+    by_name = [shape for shape in shapes if shape.name == wanted]
+    digits = wanted.removeprefix("[").removesuffix("]")
+    by_index = [shape for shape in shapes if digits.isdecimal() and shape.index == int(digits)]
+    by_case = [shape for shape in shapes if shape.name.casefold() == wanted.casefold()]
+    for fits in (by_name, by_index, by_case if wanted else []):
+        suited = [shape for shape in fits if shape.is_curve == (option != _UPPER)] or fits
+        if len(suited) == 1:
+            return suited[0]
+        if suited:
+            raise _fail(
+                cad_file,
+                f"--{option} '{wanted}' means {len(suited)} shapes: {_listed(suited)}"
+                " - choose by index",
+            )
+    raise _fail(
+        cad_file,
+        f"--{option} '{wanted}' is neither a name nor an index; found {_listed(shapes)}"
+        " - choose one of these",
+    )
+
+
+def _upper(
+    cad_file: CadFile, upper: str | None, *, is_named: bool
+) -> tuple[NamedShape | None, str]:
+    if upper is not None:
+        chosen = _picked(cad_file, upper, _UPPER)
+        if chosen.is_curve or chosen.measure <= 0.0:
+            raise _fail(cad_file, f"--upper chooses {chosen}, an upper has faces - choose another")
+        return chosen, f"upper is {chosen}, as chosen"
+    named = [
+        shape
+        for shape in cad_file.shapes
+        if shape.name.casefold() == _UPPER and not shape.is_curve and shape.measure > 0.0
+    ]
+    fits = [shape for shape in named if shape.name == _UPPER] or named
+    if len(fits) == 1:
+        return fits[0], f"upper is {fits[0]}, by its name"
+    surfaces = cad_file.surfaces()
+    if not fits and (is_named or not surfaces):
+        return None, "no upper: no shape is called 'upper'" if is_named else "no upper in the file"
+    if not fits and len(surfaces) == 1:
+        return surfaces[0], f"upper is {surfaces[0]}, the only free surface"
+    several = fits or list(surfaces)
+    raise _fail(
+        cad_file,
+        f"{len(several)} shapes could be the upper: {_listed(several)} - choose with --upper",
+    )
+
+
+def _listed(shapes: Sequence[NamedShape]) -> str:
+    """Lists candidates with their measures, the first ones if there are many."""
+    shown = ", ".join(str(shape) for shape in shapes[: settings.LISTED_SHAPES])
+    more = len(shapes) - settings.LISTED_SHAPES
+    return f"{shown} and {more} more" if more > 0 else shown
+
+
+def _summary(cad_file: CadFile) -> str:
+    counts: dict[str, int] = {}
+    for shape in cad_file.shapes:
+        if shape.is_free:
+            counts[shape.kind] = counts.get(shape.kind, 0) + 1
+    words = (f"{count} {kind}{'s' if count > 1 else ''}" for kind, count in counts.items())
+    return "only " + " and ".join(words)
+
+
+def _fail(cad_file: CadFile, found: str) -> InputError:
+    note = " (the file is gzip-compressed and was unpacked)" if cad_file.is_compressed else ""
+    return InputError(f"choose curves in {cad_file.path.name} - {found}{note}")
