@@ -36,7 +36,7 @@ STEEPEST_HALF_FOLD: Final = 1e6
 INFLECTION_SAMPLES: Final = 2
 """An inflection bridge is at most this many samples from bridges bent either way."""
 
-INFLECTION_SAGITTAS: Final = 1.0
+INFLECTION_SAGITTAS: Final = 2.0
 """Neighbours share a tangent plane if no further from it than this many typical sagittas."""
 
 TWIST_PER_FOLD: Final = 0.5
@@ -63,6 +63,12 @@ Segments grow as the square root: 0.995 costs a quarter percent of them.
 
 FINEST_TOLERANCE_PER_SIZE: Final = 1e-11
 """A chord tolerance below this share of the largest coordinate would measure round-off."""
+
+UNROLLING_ACCURACY: Final = 1e-11
+"""Between samples, polynomials follow a curve to this share of its extent while it is unrolled."""
+
+TURNED_BACK_PER_TOLERANCE: Final = 1e-3
+"""A curve segment turns back, seen from its apex, if it sweeps this share of the tolerance back."""
 
 CRITERIA: Final = ("invalid", "bending")
 """GODT+GMBT: as many locally convex bridges as possible, then least bending."""
@@ -205,11 +211,11 @@ BATCH_TICK_S: Final = 0.05
 BATCH_IN_FLIGHT: Final = 64
 """Jobs handed to a caller's own executor at a time."""
 
+BATCH_CLUSTER_IN_FLIGHT: Final = 2000
+"""Jobs handed to a Dask cluster at a time, at most."""
+
 BATCH_STARTS: Final = 3
 """A job whose worker is gone before the job begins is handed out this often in all."""
-
-RAILS_MEET: Final = 1e-5
-"""mm; rails that come this near at a bridge meet there, in one vertex."""
 
 THIN_FACE: Final = 5e-6
 """mm; a face no wider than this is left out: its two long borders become one.
@@ -219,7 +225,7 @@ can be off their surfaces.
 """
 
 THIN_FACE_PER_SIZE: Final = 5e-7
-"""... but no wider than this share of the strip's size, nor twice for rails to meet."""
+"""... but no wider than this share of the strip's size. Rails within twice this width meet."""
 
 PLANE_GAP: Final = 2e-8
 """mm; a curve and an apex within this of one plane make a planar face instead of a cone."""
@@ -262,3 +268,31 @@ RIBBON_PER_LENGTH: Final = 0.01
 
 AREA_BALANCE: Final = 1e-5
 """Relative; by how much the areas of body and removed part may differ from the upper's."""
+
+WAVE_PHASES: Final = (0.0, 0.0)
+"""rad; where the waves of P and Q start in their periods."""
+
+WAVE_SIDE: Final = "out"
+"""Wrinkles stand on the outside of the upper."""
+
+WAVES_PER_POINT: Final = 0.125
+"""A wave takes at least eight of the points along a rail to be drawn as one."""
+
+GAP_CROSSED: Final = 1e-3
+"""mm; edges of one side further apart than this have a gap of the upper between them."""
+
+COINCIDENT: Final = 1e-4
+"""mm; a profile nearer to the opening's boundary lies on it, and is sewn without a band."""
+
+SLIVER: Final = 1e-4
+"""mm; an end of the opening nearer to the end bridge is sewn to it without a fan."""
+
+SEWING: Final = 1e-3
+"""mm; edges nearer to each other than this are sewn; where they were made as one curve they are
+some 1e-6 mm apart."""
+
+BAND_FOLD_LIMIT: Final = 2.6
+"""rad; a band that turns back on itself by more than this cannot be made or cut."""
+
+EDGE_TOLERANCE_LIMIT: Final = 1e-3
+"""mm; what the largest edge tolerance of a stitched shell may be where the upper's own is less."""

@@ -9,16 +9,18 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from OCP.Geom import Geom_BSplineCurve, Geom_BSplineSurface
-from OCP.gp import gp_Pnt
+from OCP.Geom2d import Geom2d_BSplineCurve
+from OCP.gp import gp_Pnt, gp_Pnt2d
 
 from .kernel import kernel_step
 
 try:  # OCP 7.9
-    from OCP.TColgp import TColgp_Array1OfPnt, TColgp_Array2OfPnt
+    from OCP.TColgp import TColgp_Array1OfPnt, TColgp_Array1OfPnt2d, TColgp_Array2OfPnt
     from OCP.TColStd import TColStd_Array1OfInteger, TColStd_Array1OfReal, TColStd_Array2OfReal
 except ImportError:  # OCP 8.0 keeps every collection in one module
     from OCP.collections import Array1_double as TColStd_Array1OfReal
     from OCP.collections import Array1_gp_Pnt as TColgp_Array1OfPnt
+    from OCP.collections import Array1_gp_Pnt2d as TColgp_Array1OfPnt2d
     from OCP.collections import Array1_int as TColStd_Array1OfInteger
     from OCP.collections import Array2_double as TColStd_Array2OfReal
     from OCP.collections import Array2_gp_Pnt as TColgp_Array2OfPnt
@@ -50,6 +52,27 @@ def make_curve(
             return Geom_BSplineCurve(points, values, counts, degree, False)
         shares = _real_array(np.asarray(weights, dtype=np.float64))
         return Geom_BSplineCurve(points, shares, values, counts, degree, False, True)
+
+
+def make_curve_2d(
+    poles: ArrayLike,
+    knots: ArrayLike,
+    multiplicities: ArrayLike,
+    degree: int,
+    weights: ArrayLike | None = None,
+) -> Geom2d_BSplineCurve:
+    """Returns a clamped B-spline curve in the parameters of a surface: poles (k, 2)."""
+    places = np.asarray(poles, dtype=np.float64)
+    points = TColgp_Array1OfPnt2d(1, len(places))
+    for i, (u, v) in enumerate(places.tolist(), start=1):
+        points.SetValue(i, gp_Pnt2d(u, v))
+    values = _real_array(np.asarray(knots, dtype=np.float64))
+    counts = _integer_array(np.asarray(multiplicities))
+    with kernel_step("make a curve on a surface"):
+        if weights is None:
+            return Geom2d_BSplineCurve(points, values, counts, degree, False)
+        shares = _real_array(np.asarray(weights, dtype=np.float64))
+        return Geom2d_BSplineCurve(points, shares, values, counts, degree, False)
 
 
 def curve_arrays(

@@ -1,0 +1,72 @@
+"""Planar faces from shared edges; a plane needs no curves in its parameters."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+from OCP.BRep import BRep_Builder
+from OCP.Geom import Geom_Plane
+from OCP.gp import gp_Ax3, gp_Dir, gp_Pnt
+from OCP.TopAbs import TopAbs_FORWARD, TopAbs_REVERSED
+from OCP.TopoDS import TopoDS_Face, TopoDS_Wire
+
+from wrinkle_cad import settings
+
+from .borders import Border, border_poles
+
+Floats = NDArray[np.float64]
+
+
+def make_wire(loop: Border) -> TopoDS_Wire:
+    """Returns the closed wire of a loop of shared edges."""
+    builder, wire = BRep_Builder(), TopoDS_Wire()
+    builder.MakeWire(wire)
+    for item in loop:
+        builder.Add(
+            wire, item.edge.Oriented(TopAbs_FORWARD if item.is_forward else TopAbs_REVERSED)
+        )
+    wire.Closed(True)
+    return wire
+
+
+def plane_face(loop: Border) -> TopoDS_Face:
+    """Returns the planar face inside a loop, which runs counter-clockwise seen from outside."""
+    poles = border_poles(loop)
+    normal = loop_normal(poles)
+    along = poles[-1] - poles[0] if np.allclose(poles[0], poles[1]) else poles[1] - poles[0]
+    axes = gp_Ax3(gp_Pnt(*poles[0].tolist()), gp_Dir(*normal.tolist()), gp_Dir(*along.tolist()))
+    builder, face = BRep_Builder(), TopoDS_Face()
+    builder.MakeFace(face, Geom_Plane(axes), settings.CONFUSION)
+    builder.Add(face, make_wire(loop))
+    return face
+
+
+def loop_normal(poles: Floats) -> Floats:
+    """Returns (3,) mm^2: the area vector of the closed polygon through (k, 3) mm."""
+    from_first = poles - poles[0]
+    return np.asarray(np.cross(from_first[:-1], from_first[1:]).sum(axis=0) / 2.0)
+
+
+def is_plane_sector(poles: Floats, apex: Floats) -> bool:
+    """Tells whether a curve and an apex bound a simple region of a plane.
+
+    Args:
+        poles: (k, 3) mm; poles of the curve.
+        apex: (3,) mm; may be the curve's start or end.
+
+    Returns:
+        Whether all of them lie in one plane and the polygon of the poles turns one way about the
+        apex. A B-spline crosses no line more often than its polygon does, so the curve then
+        does not turn back either.
+    """
+    spokes = poles - apex
+    spokes = spokes[0 if spokes[0].any() else 1 : None if spokes[-1].any() else -1]
+    turns = np.cross(spokes[:-1], spokes[1:])
+    normal = turns.sum(axis=0)
+    size = float(np.linalg.norm(normal))
+    if size == 0.0:
+        return False
+    normal /= size
+    if np.abs(spokes @ normal).max() > settings.PLANE_GAP:
+        return False
+    return bool((turns @ normal > 0.0).all())
