@@ -1,0 +1,151 @@
+"""Strips that look different on a page, with the JSON that goes with them."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from wrinkle_cad.pattern.making import make_pieces
+from wrinkle_cad.pattern.options import NotchRule, PieceSettings
+from wrinkle_cad.report.gap_list import gap_entry
+from wrinkle_cad.report.material import Limits, smallest_bend_radius
+from wrinkle_cad.report.verdict import judge
+from wrinkle_cad.report.views import MeshView, StripView
+from wrinkle_cad.strip.convexity import validity_matrix
+from wrinkle_cad.strip.gaps import find_gaps
+from wrinkle_cad.strip.triangulation import triangulate
+from wrinkle_cad.strip.unrolling import unroll
+
+Rail = NDArray[np.float64]
+
+
+def cylinder_rails(m: int = 60, n: int = 75) -> tuple[Rail, Rail]:
+    """Two curves on a cylinder of radius 40 mm about y: developable, no inflection."""
+
+    def on_cylinder(turn: Rail, y: Rail) -> Rail:
+        return np.column_stack((40.0 * np.sin(turn), y, 40.0 * np.cos(turn)))
+
+    s, t = np.linspace(-1.2, 1.2, m), np.linspace(-1.2, 1.2, n)
+    return on_cylinder(s, 2.0 * np.sin(3.0 * s)), on_cylinder(t, 18.0 + 3.0 * np.cos(2.0 * t))
+
+
+def wavy_rails(
+    m: int = 110, n: int = 114, *, height: float = 4.0, waves: float = 4.0, offset: float = 0.0
+) -> tuple[Rail, Rail]:
+    """Two waves out of step over a bent strip of 120 mm: not developable."""
+
+    def wave(count: int, phase: float, y: float, amplitude: float) -> Rail:
+        x = np.linspace(0.0, 120.0, count)
+        fade = np.sin(math.pi * x / 120.0)
+        z = amplitude * fade * np.sin(2.0 * math.pi * waves * x / 120.0 + phase)
+        return np.column_stack((x, y + 3.0 * fade + offset, 14.0 * fade + z))
+
+    return wave(m, 0.0, 0.0, height), wave(n, 1.1, 16.0, 0.8 * height)
+
+
+def planar_rails(m: int = 30, n: int = 34) -> tuple[Rail, Rail]:
+    """Two curves in one plane: every bridge is valid."""
+    s, t = np.linspace(0.0, 80.0, m), np.linspace(0.0, 80.0, n)
+    return (
+        np.column_stack((s, 3.0 * np.sin(s / 14.0), np.zeros(m))),
+        np.column_stack((t, 20.0 + 2.0 * np.cos(t / 11.0), np.zeros(n))),
+    )
+
+
+def view_of(
+    rails: tuple[Rail, Rail],
+    name: str = "vamp wrinkle",
+    *,
+    role: Any = "strip",
+    settings: PieceSettings | None = None,
+) -> StripView:
+    """Everything a page shows of the strip between two sampled rails."""
+    strip = triangulate(*rails)
+    flat = unroll(strip)
+    settings = settings or PieceSettings(
+        seam_allowance=(6.0, 6.0, 4.0, 4.0), notches_p=NotchRule(3), notches_q=NotchRule(3)
+    )
+    return StripView(
+        name,
+        strip,
+        flat,
+        make_pieces(flat, strip, name=name, settings=settings),
+        validity_matrix(*rails, planarity=strip.planarity),
+        triangulate(*rails, search="local", planarity=strip.planarity),
+        triangulate(*rails, criteria=("bending",), planarity=strip.planarity),
+        find_gaps(strip),
+        role,
+    )
+
+
+def entry_of(view: StripView) -> dict[str, Any]:
+    """A view's entry in the ``strips`` of the JSON."""
+    strip, flat = view.triangulation, view.unrolling
+    defects = [gap for gap in view.gaps if gap.kind != "inflection"]
+    chords = [
+        float(np.linalg.norm(np.diff(rail, axis=0), axis=1).sum()) for rail in (strip.p, strip.q)
+    ]
+    assert view.least_bending is not None
+    return {
+        "name": view.name,
+        "samples_p": len(strip.p),
+        "samples_q": len(strip.q),
+        "interior_bridges": strip.interior_count,
+        "invalid_bridges": strip.invalid_count,
+        "inflection_bridges": strip.inflection_count,
+        "invalid_length_p_mm": sum(gap.p_length for gap in defects),
+        "invalid_length_q_mm": sum(gap.q_length for gap in defects),
+        "bending": strip.bending,
+        "least_bending": view.least_bending.bending,
+        "area_3d_mm2": strip.area,
+        "area_pattern_mm2": flat.area,
+        "max_fold_deg": math.degrees(float(np.abs(strip.fold).max(initial=0.0))),
+        "max_twist_deg": math.degrees(float(np.abs(strip.twist).max(initial=0.0))),
+        "smallest_bend_radius_mm": smallest_bend_radius(strip),
+        "seam_lengths_mm": {
+            "p": {"space": chords[0], "pattern": flat.p_length},
+            "q": {"space": chords[1], "pattern": flat.q_length},
+        },
+        "overlaps": flat.overlaps,
+        "gaps": [gap_entry(gap) for gap in view.gaps],
+    }
+
+
+def summary_of(
+    views: Sequence[StripView], limits: Limits | None = None, **changes: Any
+) -> dict[str, Any]:
+    """The JSON of a job with these strips."""
+    entries = [entry_of(view) for view in views]
+    return {
+        "schema": "wrinkle_cad/job",
+        "schema_version": 1,
+        "input": {"file": "vamp.step", "format": "STEP", "unit": "mm"},
+        "settings": {"tolerance": 0.05, "surface": "cones", "criteria": ["invalid", "bending"]},
+        "versions": {"wrinkle_cad": "0.1.0", "numpy": "2.1.0"},
+        "strips": entries,
+        "verdict": judge(entries, limits or Limits()).as_json(),
+        "findings": [
+            {
+                "code": "rails-turned-alike",
+                "severity": "info",
+                "message": "Q - it ran against P - both run alike now - nothing to do",
+            }
+        ],
+        "seconds": {"read": 0.012, "search": 0.034},
+        **changes,
+    }
+
+
+def dome(side: int = 120, size: float = 200.0) -> MeshView:
+    """A body of 2 (side - 1)^2 triangles."""
+    x, y = np.meshgrid(np.linspace(-40.0, 160.0, side), np.linspace(-60.0, 80.0, side))
+    z = -6.0 + 14.0 * np.sin(math.pi * x / 120.0) - 0.002 * (y - 8.0) ** 2
+    keep = np.arange(side * side).reshape(side, side)
+    a, b, c, d = (part.ravel() for part in (keep[:-1, :-1], keep[:-1, 1:], keep[1:, 1:], keep[1:, :-1]))
+    faces = np.vstack((np.column_stack((a, b, c)), np.column_stack((a, c, d))))
+    points = np.column_stack((x.ravel(), y.ravel(), z.ravel()))
+    return MeshView("upper", points.astype(np.float32), faces.astype(np.int32))

@@ -1,0 +1,1 @@
+"""What a person looks at: figures on matplotlib axes and the HTML page of one job."""

@@ -1,0 +1,156 @@
+"""What a material allows: limits given one by one or as a TOML file.
+
+    name = "calf leather, 1.2 mm"
+    thickness_mm = 1.2
+    smallest_bend_radius_mm = 2.0
+    largest_twist_deg = 4.0
+"""
+
+from __future__ import annotations
+
+import math
+import tomllib
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any, Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..errors import InputError
+from ..strip.triangulation import Triangulation
+
+_KEYS: Final = ("name", "thickness_mm", "smallest_bend_radius_mm", "largest_twist_deg")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Limits:
+    """What a strip may not exceed; None is no limit."""
+
+    max_fold_deg: float | None = None
+    """Largest fold angle at a bridge."""
+    max_twist_deg: float | None = None
+    """Largest turn of the normal along a bridge."""
+    max_invalid_percent: float | None = None
+    """Largest share of both rails covered by invalid bridges, inflection rulings left out."""
+    smallest_bend_radius_mm: float | None = None
+    """How sharply the material may be bent."""
+    thickness_mm: float = 0.0
+    """Of the material: bends finer than this are one bend to it."""
+    material: str = ""
+    """Name of the material."""
+
+    @property
+    def stated(self) -> tuple[str, ...]:
+        """The limits in words, in a fixed order; empty when there are none."""
+        named = f" ({self.material})" if self.material else ""
+        lines = (
+            ("fold at most {:g}°", self.max_fold_deg),
+            ("twist at most {:g}°", self.max_twist_deg),
+            ("invalid bridges on at most {:g} per cent of the rails", self.max_invalid_percent),
+            ("bend radius at least {:g} mm" + named, self.smallest_bend_radius_mm),
+        )
+        return tuple(words.format(limit) for words, limit in lines if limit is not None)
+
+
+def read_material(path: Path, limits: Limits | None = None) -> Limits:
+    """Adds a material's limits to those given one by one.
+
+    Args:
+        path: a TOML file with ``name``, ``thickness_mm``, ``smallest_bend_radius_mm`` and
+            ``largest_twist_deg``; all but the name may be missing.
+        limits: those given one by one; a twist limit among them wins over the material's.
+
+    Raises:
+        InputError: not TOML, an unknown or a missing key, or a value out of its range.
+    """
+    limits = limits or Limits()
+    table = _read_table(path)
+    twist = table.get("largest_twist_deg")
+    return replace(
+        limits,
+        material=table["name"],
+        thickness_mm=table.get("thickness_mm", 0.0),
+        smallest_bend_radius_mm=table.get("smallest_bend_radius_mm"),
+        max_twist_deg=twist if limits.max_twist_deg is None else limits.max_twist_deg,
+    )
+
+
+def _read_table(path: Path) -> dict[str, Any]:
+    try:
+        table = tomllib.loads(path.read_text(encoding="utf-8"))
+    except (OSError, UnicodeDecodeError, tomllib.TOMLDecodeError) as error:
+        raise InputError(
+            f"material {path.name} - cannot be read as TOML: {error} - correct the file"
+        ) from error
+    for key, value in table.items():
+        if key not in _KEYS:
+            raise InputError(
+                f"material {path.name} - unknown key {key!r} - known: {', '.join(_KEYS)} - remove it"
+            )
+        if key != "name":
+            _check_length(path, key, value)
+    if not isinstance(table.get("name"), str) or not table["name"].strip():
+        raise InputError(f"material {path.name} - no name - a text - add name = \"...\"")
+    return table
+
+
+def _check_length(path: Path, key: str, value: Any) -> None:  # noqa: ANN401 - whatever TOML holds
+    is_number = isinstance(value, int | float) and not isinstance(value, bool)
+    if not is_number or not math.isfinite(value) or value < 0.0:
+        raise InputError(
+            f"material {path.name} - {key} is {value!r} - a finite number from 0 - correct it"
+        )
+
+
+def smallest_bend_radius(triangulation: Triangulation, *, thickness: float = 0.0) -> float:
+    """How sharply the strip is bent at its sharpest place.
+
+    The strip bends at its bridges only. The turn of a bridge belongs to the material halfway to
+    its neighbours; since bridges between two coplanar triangles do not bend at all, each is taken
+    with half of both neighbours. Material of some thickness cannot be bent more finely than that:
+    the turns within one thickness add up to one bend at least as wide.
+
+    Args:
+        triangulation: the strip.
+        thickness: mm, of the material.
+
+    Returns:
+        The radius in mm, measured halfway along the bridges; inf for a flat strip.
+    """
+    if not len(triangulation.fold):
+        return math.inf
+    width = _share_of_material(triangulation)
+    turn, reach = _with_half_neighbours(triangulation.fold), _with_half_neighbours(width)
+    at = np.cumsum(width) - width / 2
+    first = np.searchsorted(at, at - thickness / 2)
+    last = np.searchsorted(at, at + thickness / 2, side="right")
+    turned = np.concatenate(([0.0], np.cumsum(triangulation.fold)))
+    is_fine = reach < thickness
+    turn = np.where(is_fine, turned[last] - turned[first], turn)
+    reach = np.where(is_fine, thickness, reach)
+    bent = (np.abs(turn) > 0.0) & (reach > 0.0)
+    if not bent.any():
+        return math.inf
+    return float((reach[bent] / np.abs(turn[bent])).min())
+
+
+def _share_of_material(triangulation: Triangulation) -> NDArray[np.float64]:
+    """(m+n-3,) mm: a quarter of the heights of the two triangles over each interior bridge."""
+    points = np.vstack((triangulation.p, triangulation.q))
+    corners = points[triangulation.triangles]
+    normal = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    area = np.linalg.norm(normal, axis=1) / 2
+    i, j = triangulation.bridges[1:-1].T
+    length = np.linalg.norm(triangulation.p[i] - triangulation.q[j], axis=1)
+    both = area[:-1] + area[1:]
+    share: NDArray[np.float64] = np.divide(
+        both / 2, length, out=np.zeros_like(both), where=length > 0.0
+    )
+    return share
+
+
+def _with_half_neighbours(values: NDArray[np.float64]) -> NDArray[np.float64]:
+    padded = np.concatenate(([0.0], values, [0.0]))
+    summed: NDArray[np.float64] = values + (padded[:-2] + padded[2:]) / 2
+    return summed

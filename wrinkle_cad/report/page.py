@@ -1,0 +1,91 @@
+"""The HTML page of one job: self-contained, opened from disk, without a network.
+
+Every number on it is taken from the JSON by its path; every text goes through the serialiser.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from functools import cache
+from importlib.resources import files
+from typing import Any, Final
+
+from .markup import Element, node, script, to_html, to_script
+from .numbers import Numbers
+from .panels import figures_panel, space_panel, strip_section, tabs
+from .tables import tables_panel, verdict_panel
+from .views import MeshView, StripView, scene_payload
+
+_SCRIPTS: Final = ("core.js", "scene.js", "matrix.js", "curves.js", "pattern.js", "main.js")
+_LIBRARY: Final = "three/three.viewer.min.js"
+_LICENSE: Final = "three/LICENSE"
+
+
+def write_page(
+    summary: Mapping[str, Any], strips: Sequence[StripView], body: MeshView | None = None
+) -> str:
+    """Writes the page of a job.
+
+    Args:
+        summary: what NAME.json holds, with ``verdict`` as ``Verdict.as_json`` gives it.
+        strips: the strips in the order of ``summary["strips"]``.
+        body: what the strips are sewn to.
+
+    Returns:
+        The whole page.
+
+    Raises:
+        InputError: the body's faces point at vertices that do not exist.
+    """
+    numbers = Numbers(summary)
+    main = node("main", *_header(numbers), verdict_panel(numbers), figures_panel(numbers))
+    main.append(space_panel(strips, body))
+    if len(strips) > 1:
+        main.append(tabs([view.name for view in strips]))
+    for index, view in enumerate(strips):
+        main.append(strip_section(numbers, index, view))
+    main.extend(tables_panel(numbers))
+    scripts = [
+        script(to_script(summary), type="application/json", id="summary"),
+        script(to_script(scene_payload(strips, body)), type="application/json", id="scene"),
+        script(_packaged(_LIBRARY)),
+        *(script(_packaged(name)) for name in _SCRIPTS),
+    ]
+    return page_of(str(numbers.get("/input/file") or "strip"), main, scripts)
+
+
+def page_of(title: str, main: Element, scripts: Sequence[Element]) -> str:
+    """Wraps the content of a page with its head, style, licences and scripts."""
+    style = node("style")
+    style.text = _packaged("page.css")
+    head = node(
+        "head",
+        node("meta", charset="utf-8"),
+        node("meta", name="generator", content="wrinkle_cad"),
+        node("meta", name="viewport", content="width=device-width, initial-scale=1"),
+        node("link", rel="icon", href="data:,"),
+        node("title", f"{title} \N{MIDDLE DOT} wrinkle_cad"),
+        style,
+    )
+    licences = [node("template", _packaged(_LICENSE), id="three-licence")] if scripts else []
+    return to_html(node("html", head, node("body", main, *licences, *scripts), lang="en"))
+
+
+def _header(numbers: Numbers) -> list[Element]:
+    made = ", ".join(
+        f"{what} {numbers.get(path)}"
+        for what, path in (("wrinkle_cad", "/versions/wrinkle_cad"), ("unit", "/input/unit"))
+        if numbers.get(path)
+    )
+    return [
+        node(
+            "header",
+            node("p", "Strip report" + (f" \N{MIDDLE DOT} {made}" if made else ""), class_="eyebrow"),
+            node("h1", str(numbers.get("/input/file") or "Strip")),
+        )
+    ]
+
+
+@cache
+def _packaged(name: str) -> str:
+    return files(__package__).joinpath("page", *name.split("/")).read_text(encoding="utf-8")

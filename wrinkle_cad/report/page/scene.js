@@ -1,0 +1,217 @@
+"use strict";
+/* The 3-D view: strips, bands and body, coloured by what the toolbar says. */
+Report.space = (canvas, panel) => {
+  const { strips, scene: packed, color, stateOf, foldAt, degrees } = Report;
+  const renderer = new THREE.WebGLRenderer({ canvas, antialias: true, alpha: true, preserveDrawingBuffer: true });
+  const world = new THREE.Scene();
+  const camera = new THREE.PerspectiveCamera(32, 1, 0.1, 1e5);
+  camera.up.set(0, 0, 1);
+  const controls = new THREE.OrbitControls(camera, canvas);
+  const sun = new THREE.DirectionalLight(0xffffff, 2.1);
+  const sky = new THREE.HemisphereLight(0xffffff, 0x8a94a6, 1.5);
+  world.add(sky, camera);
+  camera.add(sun);
+  sun.position.set(0.5, 0.9, 1);
+  let waiting = false, colorBy = "validity", solid = null;
+  const marker = new THREE.Mesh(new THREE.CylinderGeometry(1, 1, 1, 12), new THREE.MeshBasicMaterial());
+  marker.visible = false;
+  marker.renderOrder = 2;
+  world.add(marker);
+
+  const point = (strip, vertex) => {
+    const from = vertex < strip.m ? strip.p : strip.q, at = 3 * (vertex < strip.m ? vertex : vertex - strip.m);
+    return [from[at], from[at + 1], from[at + 2]];
+  };
+  function geometry(values) {
+    const shape = new THREE.BufferGeometry();
+    shape.setAttribute("position", new THREE.BufferAttribute(new Float32Array(values), 3));
+    shape.setAttribute("color", new THREE.BufferAttribute(new Float32Array(values.length), 3));
+    return shape;
+  }
+  /* Corners of triangle k between bridges k and k + 1, and which bridge each belongs to (-1: both). */
+  function corners(strip, k) {
+    const i = strip.chosen.p[k], j = strip.chosen.q[k];
+    return strip.chosen.steps[k] === 0
+      ? [[i, k], [i + 1, k + 1], [strip.m + j, -1]]
+      : [[i, -1], [strip.m + j + 1, k + 1], [strip.m + j, k]];
+  }
+  function build(strip) {
+    const faces = [], lines = [], rails = [];
+    for (let k = 0; k < strip.chosen.steps.length; k += 1) {
+      for (const [vertex] of corners(strip, k)) faces.push(...point(strip, vertex));
+    }
+    for (let k = 0; k < strip.chosen.count; k += 1) {
+      lines.push(...point(strip, strip.chosen.p[k]), ...point(strip, strip.m + strip.chosen.q[k]));
+    }
+    for (let i = 1; i < strip.m; i += 1) rails.push(...point(strip, i - 1), ...point(strip, i));
+    for (let j = 1; j < strip.n; j += 1) rails.push(...point(strip, strip.m + j - 1), ...point(strip, strip.m + j));
+    const shape = geometry(faces);
+    shape.computeVertexNormals();
+    const mesh = new THREE.Mesh(shape, new THREE.MeshLambertMaterial({
+      vertexColors: true, side: THREE.DoubleSide, polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1,
+    }));
+    const bridges = new THREE.LineSegments(geometry(lines), new THREE.LineBasicMaterial({ vertexColors: true, transparent: true }));
+    const edges = new THREE.LineSegments(geometry(rails), new THREE.LineBasicMaterial());
+    const group = new THREE.Group();
+    group.add(mesh, bridges, edges);
+    world.add(group);
+    mesh.userData.strip = strip;
+    return { strip, group, mesh, bridges, edges };
+  }
+  function buildBody(body) {
+    const shares = new Uint16Array(Report.bytes(body.points).buffer), faces = Report.bytes(body.faces).buffer;
+    const points = new Float32Array(shares.length);
+    for (let at = 0; at < points.length; at += 1) points[at] = body.low[at % 3] + (shares[at] / 65535) * body.span[at % 3];
+    const shape = new THREE.BufferGeometry();
+    shape.setAttribute("position", new THREE.BufferAttribute(points, 3));
+    shape.setIndex(new THREE.BufferAttribute(body.wide ? new Uint32Array(faces) : new Uint16Array(faces), 1));
+    shape.computeVertexNormals();
+    const mesh = new THREE.Mesh(shape, new THREE.MeshLambertMaterial({ side: THREE.DoubleSide, polygonOffset: true, polygonOffsetFactor: 3, polygonOffsetUnits: 3 }));
+    world.add(mesh);
+    return mesh;
+  }
+  const items = strips.map(build);
+  if (packed.body) solid = buildBody(packed.body);
+
+  /* Cividis, sampled: even in brightness and the same to colour-blind eyes. */
+  const RAMP = ["#00224e", "#35456c", "#666970", "#948e77", "#c8b866", "#fee838"].map((code) => new THREE.Color(code));
+  function ramp(share) {
+    const at = Math.max(0, Math.min(1, share)) * (RAMP.length - 1), from = Math.min(RAMP.length - 2, Math.floor(at));
+    return RAMP[from].clone().lerp(RAMP[from + 1], at - from);
+  }
+  const measure = (strip, k) => degrees(Math.abs(colorBy === "twist" ? strip.twist[k] : foldAt(strip.chosen, k)));
+  function highest() {
+    let high = 0;
+    for (const strip of strips) for (let k = 1; k < strip.chosen.count - 1; k += 1) high = Math.max(high, measure(strip, k));
+    return high;
+  }
+  function paint() {
+    const themed = Object.fromEntries(["valid", "inflection", "invalid", "strip", "band", "ink", "body"].map((name) => [name, new THREE.Color(color(name))]));
+    const high = colorBy === "validity" ? 0 : highest();
+    const lineColor = (strip, k) => {
+      if (colorBy !== "validity") return ramp(high ? measure(strip, k) / high : 0);
+      return themed[stateOf(strip, k)];
+    };
+    const faceColor = (strip, k) => {
+      if (colorBy !== "validity") return ramp(high ? measure(strip, k) / high : 0);
+      const state = k === 0 || k === strip.chosen.count - 1 ? "valid" : stateOf(strip, k);
+      return state === "valid" ? themed[strip.role === "band" ? "band" : "strip"] : themed[state];
+    };
+    for (const item of items) {
+      const { strip } = item, faces = item.mesh.geometry.attributes.color, lines = item.bridges.geometry.attributes.color;
+      for (let k = 0; k < strip.chosen.steps.length; k += 1) {
+        const own = [faceColor(strip, k), faceColor(strip, k + 1)], both = own[0].clone().lerp(own[1], 0.5);
+        corners(strip, k).forEach(([, bridge], at) => {
+          const tone = bridge < 0 ? both : own[bridge - k];
+          faces.setXYZ(3 * k + at, tone.r, tone.g, tone.b);
+        });
+      }
+      for (let k = 0; k < strip.chosen.count; k += 1) {
+        const tone = lineColor(strip, k);
+        lines.setXYZ(2 * k, tone.r, tone.g, tone.b);
+        lines.setXYZ(2 * k + 1, tone.r, tone.g, tone.b);
+      }
+      faces.needsUpdate = lines.needsUpdate = true;
+      item.bridges.material.opacity = colorBy === "validity" ? 0.75 : 1;
+      item.edges.material.color = themed.ink;
+    }
+    if (solid) solid.material.color = packed.body.color ? new THREE.Color(...packed.body.color) : themed.body;
+    marker.material.color = new THREE.Color(color("highlight"));
+    legend(high);
+    request();
+  }
+  function legend(high) {
+    const box = panel.querySelector(".legend");
+    box.querySelectorAll("[data-for]").forEach((part) => { part.hidden = part.dataset.for !== (colorBy === "validity" ? "validity" : "measure"); });
+    box.querySelector(".high").textContent = high.toFixed(high < 1 ? 3 : 1) + "°";
+    box.querySelector(".what").textContent = colorBy === "twist" ? "Twist along a bridge" : "Fold at a bridge";
+  }
+  function frame() {
+    const box = new THREE.Box3();
+    items.forEach((item) => { if (item.group.visible) box.expandByObject(item.group); });
+    if (solid && solid.visible) box.expandByObject(solid);
+    if (box.isEmpty()) return;
+    const middle = box.getCenter(new THREE.Vector3()), radius = Math.max(1e-6, box.getSize(new THREE.Vector3()).length() / 2);
+    const fit = radius / Math.sin((camera.fov * Math.PI) / 360) / Math.min(1, camera.aspect) * 0.8;
+    camera.position.copy(middle).add(new THREE.Vector3(0.35, -0.8, 0.62).normalize().multiplyScalar(fit));
+    camera.near = fit / 500;
+    camera.far = fit * 20;
+    camera.updateProjectionMatrix();
+    controls.target.copy(middle);
+    controls.update();
+    request();
+  }
+  function render() {
+    waiting = false;
+    renderer.render(world, camera);
+    canvas.dataset.drawn = "yes";
+  }
+  function request() {
+    if (!waiting) { waiting = true; requestAnimationFrame(render); }
+  }
+  function resize() {
+    const { clientWidth: width, clientHeight: height } = canvas.parentElement;
+    if (!width || !height) return;
+    renderer.setPixelRatio(Math.min(2, window.devicePixelRatio || 1));
+    renderer.setSize(width, height, false);
+    camera.aspect = width / height;
+    camera.updateProjectionMatrix();
+    request();
+  }
+  function highlight(selected) {
+    marker.visible = Boolean(selected);
+    if (selected) {
+      const { strip, bridge } = selected;
+      const a = new THREE.Vector3(...point(strip, strip.chosen.p[bridge])), b = new THREE.Vector3(...point(strip, strip.m + strip.chosen.q[bridge]));
+      const along = b.clone().sub(a), length = Math.max(1e-6, along.length());
+      const thick = camera.position.distanceTo(controls.target) * 0.0032;
+      marker.position.copy(a).add(b).multiplyScalar(0.5);
+      marker.quaternion.setFromUnitVectors(new THREE.Vector3(0, 1, 0), along.divideScalar(length));
+      marker.scale.set(thick, length * 1.04, thick);
+      canvas.dataset.highlight = String(bridge);
+    } else delete canvas.dataset.highlight;
+    request();
+  }
+
+  const caster = new THREE.Raycaster();
+  function pick(event) {
+    const box = canvas.getBoundingClientRect();
+    const at = new THREE.Vector2(((event.clientX - box.left) / box.width) * 2 - 1, 1 - ((event.clientY - box.top) / box.height) * 2);
+    caster.setFromCamera(at, camera);
+    const shown = items.filter((item) => item.group.visible).map((item) => item.mesh);
+    const hit = caster.intersectObjects(shown, false)[0];
+    if (!hit) return Report.select(null);
+    const { strip } = hit.object.userData, k = hit.faceIndex;
+    const away = (bridge) => {
+      const a = new THREE.Vector3(...point(strip, strip.chosen.p[bridge])), b = new THREE.Vector3(...point(strip, strip.m + strip.chosen.q[bridge]));
+      return b.sub(a).normalize().cross(hit.point.clone().sub(a)).length();
+    };
+    return Report.select(strip, away(k) <= away(k + 1) ? k : k + 1);
+  }
+  canvas.addEventListener("pointermove", (event) => { if (!event.buttons) pick(event); });
+  canvas.addEventListener("pointerdown", (event) => { canvas.focus({ preventScroll: true }); if (event.pointerType === "touch") pick(event); });
+  canvas.addEventListener("pointerleave", () => Report.select(null));
+  canvas.tabIndex = 0;
+  controls.enableZoom = false;
+  canvas.addEventListener("focus", () => { controls.enableZoom = true; });
+  canvas.addEventListener("blur", () => { controls.enableZoom = false; });
+  canvas.addEventListener("touchstart", () => { controls.enableZoom = true; }, { passive: true });
+  controls.addEventListener("change", request);
+
+  panel.querySelectorAll("[name=color-by]").forEach((input) => input.addEventListener("change", () => { colorBy = input.value; paint(); }));
+  panel.querySelectorAll("[data-layer]").forEach((input) => input.addEventListener("change", () => {
+    const { layer } = input.dataset;
+    if (layer === "body" && solid) solid.visible = input.checked;
+    else if (layer === "bridges") items.forEach((item) => { item.bridges.visible = input.checked; });
+    else if (layer === "rails") items.forEach((item) => { item.edges.visible = input.checked; });
+    else if (items[Number(layer)]) items[Number(layer)].group.visible = input.checked;
+    request();
+  }));
+  panel.querySelector(".reset").addEventListener("click", frame);
+  new ResizeObserver(resize).observe(canvas.parentElement);
+  Report.onSelect(highlight);
+  Report.onRedraw(() => { paint(); render(); });
+  resize();
+  paint();
+  frame();
+};

@@ -1,0 +1,235 @@
+"""The parts of the page that hold pictures: 3-D view, validity matrix, curves, pattern."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Final
+
+from .. import settings
+from .markup import Element, node
+from .numbers import Numbers
+from .views import MeshView, StripView
+
+_IDLE: Final = "Point at the strip: the same bridge lights up in every view."
+_COLORS: Final = (("validity", "Validity"), ("fold", "Fold angle"), ("twist", "Twist"))
+_PATTERN_LAYERS: Final = (
+    ("cut", "Cut line"),
+    ("sew", "Sew line"),
+    ("notches", "Notches"),
+    ("grain", "Grain line"),
+    ("bridges", "Bridges"),
+    ("dimensions", "Dimensions"),
+    ("names", "Names"),
+)
+
+
+def figures_panel(numbers: Numbers) -> Element:
+    """The key figures of the first strip, or of each strip's worst, as tiles."""
+    worst = _worst_strip(numbers)
+    entry, said = f"/strips/{worst}", f"/verdict/strips/{worst}"
+    of = node("small", " of ", numbers.show(f"{entry}/interior_bridges"))
+    tiles = (
+        ("Invalid bridges", [numbers.show(f"{entry}/invalid_bridges"), of]),
+        ("Rail they cover", [numbers.show(f"{said}/invalid_percent", "%", 1)]),
+        ("Largest fold", [numbers.show(f"{entry}/max_fold_deg", "°", 2)]),
+        ("Largest twist", [numbers.show(f"{entry}/max_twist_deg", "°", 2)]),
+        ("Area of the pattern", [numbers.show(f"{entry}/area_pattern_mm2", "mm²", 1)]),
+        ("Price of developability", [numbers.show(f"{said}/price_of_developability", "×", 2)]),
+    )
+    return node(
+        "dl",
+        *(node("div", node("dt", title), node("dd", *parts), class_="tile") for title, parts in tiles),
+        class_="tiles",
+    )
+
+
+def _worst_strip(numbers: Numbers) -> int:
+    entries = numbers.get("/strips") or [{}]
+    shares = [
+        float(numbers.get(f"/verdict/strips/{at}/invalid_percent") or 0.0)
+        for at in range(len(entries))
+    ]
+    return shares.index(max(shares))
+
+
+def space_panel(strips: Sequence[StripView], body: MeshView | None) -> Element:
+    """The 3-D view with its colours and layers."""
+    colors = [
+        node(
+            "label",
+            node("input", type="radio", name="color-by", value=value, checked=value == "validity"),
+            title,
+        )
+        for value, title in _COLORS
+    ]
+    layers = [_layer(str(at), view.name) for at, view in enumerate(strips)]
+    layers += [_layer("bridges", "Bridges"), _layer("rails", "Rails")]
+    if body is not None:
+        layers.append(_layer("body", body.name))
+    return node(
+        "section",
+        node("div", node("h2", "In space"), node("p", _IDLE, class_="readout"), class_="head"),
+        node(
+            "div",
+            node("fieldset", *colors, class_="segments", aria_label="Colour by"),
+            node("fieldset", node("legend", "Show"), *layers),
+            node("button", "Whole view", type="button", class_="reset"),
+            class_="toolbar",
+        ),
+        node(
+            "div",
+            node("canvas", class_="space", aria_label="3-D view: drag to turn, wheel to zoom"),
+            node("p", "This browser shows no 3-D graphics (WebGL).", class_="failure"),
+            class_="stage",
+        ),
+        _space_legend(),
+        class_="card space-panel",
+    )
+
+
+def _layer(value: str, title: str) -> Element:
+    return node("label", node("input", type="checkbox", data_layer=value, checked=True), title)
+
+
+def _key(tone: str, title: str, kind: str = "") -> Element:
+    mark = node("i", class_=f"key {kind}".strip(), style=f"--tone: var(--{tone})")
+    return node("span", mark, title)
+
+
+def _space_legend() -> Element:
+    validity = {"data_for": "validity"}
+    keys = [
+        _key("valid", "locally convex bridge"),
+        _key("inflection", "inflection ruling"),
+        _key("invalid", "not developable"),
+    ]
+    for key in keys:
+        key.set("data-for", validity["data_for"])
+    measure = node(
+        "span",
+        node("span", class_="what"),
+        "0°",
+        node("i", class_="ramp"),
+        node("span", class_="high"),
+        data_for="measure",
+        hidden=True,
+    )
+    hint = node("span", "Drag to turn; click, then wheel to zoom; right button to shift.")
+    return node("div", *keys, measure, hint, class_="legend")
+
+
+def tabs(names: Sequence[str]) -> Element:
+    """One button for each strip."""
+    buttons = [
+        node("button", name, type="button", role="tab", data_tab=str(at))
+        for at, name in enumerate(names)
+    ]
+    return node("div", *buttons, class_="tabs", role="tablist", aria_label="Strips")
+
+
+def strip_section(numbers: Numbers, index: int, view: StripView) -> Element:
+    """Matrix, curves and pattern of one strip."""
+    parts = [_matrix_card(numbers, index, view), _curves_card(numbers, index, view)]
+    if view.pieces:
+        parts.append(_pattern_card(view))
+    return node("section", *parts, class_="strip-views", data_strip=str(index))
+
+
+def _zoom() -> Element:
+    buttons = (("+", "Nearer"), ("\N{MINUS SIGN}", "Further"), ("\N{WHITE SQUARE}", "Whole"))
+    return node(
+        "div",
+        *(node("button", sign, type="button", title=title, aria_label=title) for sign, title in buttons),
+        class_="zoom",
+    )
+
+
+def _matrix_card(numbers: Numbers, index: int, view: StripView) -> Element:
+    local = [_key("local", "local search", "dash")] if view.local is not None else []
+    return node(
+        "div",
+        node("h2", "Validity matrix", class_="head"),
+        node(
+            "div", node("canvas", class_="matrix", aria_label="Validity matrix"), _zoom(), class_="plot"
+        ),
+        node(
+            "div",
+            _key("valid-cell", "locally convex", "box"),
+            _key("invalid-cell", "not", "box"),
+            _key("ink", "chosen path"),
+            *local,
+            class_="legend",
+        ),
+        node("p", *_matrix_words(numbers, index, view), class_="note"),
+        class_="card",
+    )
+
+
+def _matrix_words(numbers: Numbers, index: int, view: StripView) -> list[Element | str]:
+    words: list[Element | str] = [
+        "Each cell is one possible bridge, from one of ",
+        numbers.show(f"/strips/{index}/samples_p"),
+        " samples of P to one of ",
+        numbers.show(f"/strips/{index}/samples_q"),
+        " of Q; a path from corner to corner is a strip. ",
+    ]
+    if view.valid is None:
+        words.append("The matrix is too large to be drawn: only the paths are.")
+    elif max(view.valid.shape) > settings.MATRIX_OVERVIEW:
+        words.append(
+            "Seen whole, a pixel stands for several bridges and is shaded by the share of them"
+            " that is locally convex, never white or full where both kinds occur; zoom in for"
+            " single bridges."
+        )
+    return words
+
+
+def _curves_card(numbers: Numbers, index: int, view: StripView) -> Element:
+    entry = f"/strips/{index}"
+    chosen = _key("chosen", "this strip, in all ")
+    chosen.append(numbers.show(f"{entry}/bending"))
+    keys = [chosen]
+    if view.least_bending is not None:
+        least = _key("least", "least-bending path, in all ", "dots")
+        least.append(numbers.show(f"{entry}/least_bending"))
+        keys.append(least)
+    if view.local is not None:
+        keys.append(_key("local", "local search", "dash"))
+    keys += [_key("inflection", "inflection", "box"), _key("invalid", "not developable", "box")]
+    return node(
+        "div",
+        node("h2", "Along the strip", class_="head"),
+        node(
+            "div",
+            node("canvas", class_="curves", aria_label="Bending energy and fold angle"),
+            class_="plot",
+        ),
+        node("div", *keys, class_="legend"),
+        node(
+            "p",
+            "Where this strip needs far more energy than the least-bending one, it was made"
+            " developable with folds.",
+            class_="note",
+        ),
+        class_="card",
+    )
+
+
+def _pattern_card(view: StripView) -> Element:
+    layers = [
+        node("label", node("input", type="checkbox", data_pattern_layer=name, checked=True), title)
+        for name, title in _PATTERN_LAYERS
+        if name != "sew" or any(piece.has_allowance for piece in view.pieces)
+    ]
+    return node(
+        "div",
+        node("div", node("h2", "Flat pattern"), node("p", _IDLE, class_="readout"), class_="head"),
+        node("div", node("fieldset", node("legend", "Show"), *layers), class_="toolbar"),
+        node(
+            "div",
+            node("canvas", class_="pattern", aria_label="Flat pattern"),
+            _zoom(),
+            class_="plot flat",
+        ),
+        class_="card wide",
+    )

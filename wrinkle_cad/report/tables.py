@@ -1,0 +1,265 @@
+"""The parts of the page that hold words and numbers, all of them from the JSON."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any, Final
+
+from .markup import Child, Element, node
+from .numbers import Numbers
+
+_SIGN: Final = {"developable": "\N{CHECK MARK}", "inflection": "~", "not-developable": "!"}
+_PASSED: Final = {True: ("PASS", "pass"), False: ("FAIL", "fail")}
+_STITCH_ROWS: Final = (
+    ("Free edges before", "free_edges_before", ""),
+    ("Free edges after", "free_edges_after", ""),
+    ("Largest edge tolerance", "max_edge_tolerance_mm", "mm"),
+    ("Area balance", "area_balance_mm2", "mm²"),
+)
+
+
+def verdict_panel(numbers: Numbers) -> Element:
+    """The verdict at the top of the page."""
+    said: Mapping[str, Any] = numbers.get("/verdict")
+    panel = node(
+        "section",
+        node("div", _SIGN[said["state"]], class_="sign", aria_hidden="true"),
+        node("p", said["headline"], class_="headline"),
+        node("p", said["meaning"], class_="meaning"),
+        _limits(said),
+        class_=f"card verdict {said['state']}",
+    )
+    if len(said["strips"]) > 1:
+        lines = [
+            node("li", strip["name"], ": ", strip["sentence"])
+            for strip in said["strips"]
+            if strip["state"] != "developable"
+        ]
+        panel.append(node("ul", *lines, class_="missed"))
+    return panel
+
+
+def _limits(said: Mapping[str, Any]) -> Element:
+    if said["passed"] is None:
+        return node("div", "No limits were given, so nothing is passed or refused.", class_="limits note")
+    word, kind = _PASSED[bool(said["passed"])]
+    box = node(
+        "div",
+        node("span", word, class_=f"badge {kind}"),
+        "Limits: " + "; ".join(said["limits"]) + ".",
+        class_="limits",
+    )
+    if said["missed"]:
+        box = node("div", box, node("ul", *(node("li", line) for line in said["missed"]), class_="missed"))
+    return box
+
+
+def tables_panel(numbers: Numbers) -> list[Element]:
+    """All tables below the pictures, in their order; those without content are left out."""
+    small = [
+        _seams_card(numbers),
+        _stitch_card(numbers),
+        _pairs_card(numbers, "Settings", "/settings"),
+        _pairs_card(numbers, "Seconds", "/seconds", unit="s", digits=3),
+        _pairs_card(numbers, "Versions", "/versions"),
+    ]
+    return [
+        card
+        for card in (
+            _gaps_card(numbers),
+            _findings_card(numbers),
+            _strips_card(numbers),
+            node("div", *(card for card in small if card is not None), class_="tables"),
+        )
+        if card is not None
+    ]
+
+
+def _card(title: str, *content: Child) -> Element:
+    return node("section", node("h2", title, class_="head"), *content, class_="card")
+
+
+def table(columns: Sequence[tuple[str, bool]], rows: Sequence[Element]) -> Element:
+    """A table that scrolls sideways by itself.
+
+    Args:
+        columns: title and whether the column holds numbers.
+        rows: its ``tr`` elements.
+    """
+    head = (node("th", title, scope="col", **_number_class(right)) for title, right in columns)
+    body = node("tbody", *rows)
+    return node("div", node("table", node("thead", node("tr", *head)), body), class_="scroll")
+
+
+def cell(*content: Child, right: bool = False) -> Element:
+    """A table cell; ``right`` for numbers."""
+    return node("td", *content, **_number_class(right))
+
+
+def _number_class(right: bool) -> dict[str, str]:
+    return {"class_": "n"} if right else {}
+
+
+def _name(numbers: Numbers, at: int) -> str:
+    return str(numbers.get(f"/strips/{at}/name"))
+
+
+def _strips_card(numbers: Numbers) -> Element:
+    columns = (
+        ("Strip", False),
+        ("Samples P", True),
+        ("Samples Q", True),
+        ("Bridges", True),
+        ("Invalid", True),
+        ("of them inflections", True),
+        ("Largest fold", True),
+        ("Largest twist", True),
+        ("Bending", True),
+        ("Least bending", True),
+        ("Price", True),
+    )
+    rows = []
+    for at in range(len(numbers.get("/strips"))):
+        entry = f"/strips/{at}"
+        shown = [
+            *(numbers.show(f"{entry}/{key}") for key in ("samples_p", "samples_q")),
+            *(
+                numbers.show(f"{entry}/{key}_bridges")
+                for key in ("interior", "invalid", "inflection")
+            ),
+            *(numbers.show(f"{entry}/max_{key}_deg", "°", 2) for key in ("fold", "twist")),
+            *(numbers.show(f"{entry}/{key}") for key in ("bending", "least_bending")),
+            numbers.show(f"/verdict/strips/{at}/price_of_developability", "×", 2),
+        ]
+        name = cell(_name(numbers, at))
+        rows.append(node("tr", name, *(cell(figure, right=True) for figure in shown)))
+    note = (
+        "Price: bending energy of the strip over that of the one that bends least. Far above 1,"
+        " its bridges were made locally convex with folds."
+    )
+    return _card("Strips", table(columns, rows), node("p", note, class_="note"))
+
+
+def _seams_card(numbers: Numbers) -> Element:
+    columns = (("", False), ("In space", True), ("Flat", True), ("Difference", True))
+    rows = []
+    for at in range(len(numbers.get("/strips"))):
+        entry = f"/strips/{at}"
+        for key, title in (("p", "seam P"), ("q", "seam Q")):
+            seam = f"{entry}/seam_lengths_mm/{key}"
+            difference = f"/verdict/strips/{at}/seam_difference_{key}_mm"
+            rows.append(
+                node(
+                    "tr",
+                    cell(f"{_name(numbers, at)}, {title}"),
+                    cell(numbers.show(f"{seam}/space", "mm", 3), right=True),
+                    cell(numbers.show(f"{seam}/pattern", "mm", 3), right=True),
+                    cell(numbers.show(difference, "mm", 4), right=True),
+                )
+            )
+        rows.append(
+            node(
+                "tr",
+                cell(f"{_name(numbers, at)}, area"),
+                cell(numbers.show(f"{entry}/area_3d_mm2", "mm²", 2), right=True),
+                cell(numbers.show(f"{entry}/area_pattern_mm2", "mm²", 2), right=True),
+                cell(),
+            )
+        )
+    return _card("Seams and areas", table(columns, rows))
+
+
+def _gaps_card(numbers: Numbers) -> Element | None:
+    columns = (
+        ("Strip", False),
+        ("Kind", False),
+        ("Bridges", True),
+        ("Along P", True),
+        ("Along Q", True),
+        ("Angle defect", True),
+        ("Twist", True),
+        ("What to change", False),
+    )
+    rows = [
+        _gap_row(numbers, at, number, gap)
+        for at, entry in enumerate(numbers.get("/strips"))
+        for number, gap in enumerate(entry["gaps"])
+    ]
+    if not rows:
+        return None
+    note = "Runs of bridges that are not locally convex. Click a row to see its middle."
+    return _card("Where it is not developable", table(columns, rows), node("p", note, class_="note"))
+
+
+def _gap_row(numbers: Numbers, at: int, number: int, gap: Mapping[str, Any]) -> Element:
+    path = f"/strips/{at}/gaps/{number}"
+    ends = [numbers.show(f"{path}/first_bridge")]
+    if gap["last_bridge"] != gap["first_bridge"]:
+        ends.append(numbers.show(f"{path}/last_bridge"))
+    span: list[Child] = [ends[0], *([" to ", ends[1]] if len(ends) > 1 else [])]
+    return node(
+        "tr",
+        cell(_name(numbers, at)),
+        cell(gap["kind"]),
+        cell(*span, right=True),
+        cell(numbers.show(f"{path}/p_length_mm", "mm", 2), right=True),
+        cell(numbers.show(f"{path}/q_length_mm", "mm", 2), right=True),
+        cell(numbers.show(f"{path}/angle_defect_deg", "°", 2), right=True),
+        cell(numbers.show(f"{path}/twist_deg", "°", 2), right=True),
+        cell(gap["advice"]),
+        data_gap_strip=str(at),
+        data_first=str(gap["first_bridge"]),
+        data_last=str(gap["last_bridge"]),
+    )
+
+
+def _findings_card(numbers: Numbers) -> Element | None:
+    findings = numbers.get("/findings")
+    if not findings:
+        return None
+    items = [
+        node(
+            "li",
+            node("span", finding["severity"], class_=f"badge {finding['severity']}"),
+            node("span", finding["message"]),
+        )
+        for finding in findings
+    ]
+    return _card("Findings", node("ul", *items, class_="findings"))
+
+
+def _stitch_card(numbers: Numbers) -> Element | None:
+    stitch = numbers.get("/stitch")
+    if not stitch:
+        return None
+    rows = [
+        node("tr", cell(title), cell(numbers.show(f"/stitch/{key}", unit), right=True))
+        for title, key, unit in _STITCH_ROWS
+        if key in stitch
+    ]
+    rows.append(node("tr", cell("Valid solid geometry"), cell("yes" if stitch["is_valid"] else "no")))
+    return _card("Sewn to the body", table((("", False), ("", True)), rows))
+
+
+def _pairs_card(
+    numbers: Numbers, title: str, path: str, *, unit: str = "", digits: int | None = None
+) -> Element | None:
+    pairs = numbers.get(path)
+    if not pairs:
+        return None
+    rows = []
+    for key, value in pairs.items():
+        if value is None or value == "":
+            continue
+        is_number = isinstance(value, int | float) and not isinstance(value, bool)
+        shown = numbers.show(f"{path}/{key}", unit, digits) if is_number else _words(value)
+        rows.append(node("tr", cell(key.replace("_", " ")), cell(shown)))
+    return _card(title, table((("", False), ("", False)), rows))
+
+
+def _words(value: Any) -> str:  # noqa: ANN401 - a setting of any type
+    if isinstance(value, bool):
+        return "yes" if value else "no"
+    if isinstance(value, list | tuple):
+        return ", ".join(str(part) for part in value)
+    return str(value)
