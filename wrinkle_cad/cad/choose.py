@@ -10,15 +10,11 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Final
 
 from wrinkle_cad import settings
 from wrinkle_cad.errors import InputError
 
-from .shapes import CadFile, NamedShape
-
-_RAILS: Final = ("P", "Q")
-_UPPER: Final = "upper"
+from .shapes import RAILS, UPPER, CadFile, NamedShape, rail_role
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -71,23 +67,16 @@ def choose_inputs(
     return Chosen(tuple(strips), surface, (*reasons, why))
 
 
-def _role(name: str) -> tuple[str, str] | None:
-    """Splits ``<strip>:P`` into the strip and ``P``; None for any other name."""
-    strip, _, rail = name.rpartition(":")
-    rail = rail.strip().upper()
-    return (strip.strip(), rail) if rail in _RAILS else None
-
-
 def _has_convention(cad_file: CadFile) -> bool:
-    return any(_role(curve.name) for curve in cad_file.curves()) or any(
-        shape.name.casefold() == _UPPER for shape in cad_file.shapes
+    return any(rail_role(curve.name) for curve in cad_file.curves()) or any(
+        shape.name.casefold() == UPPER for shape in cad_file.shapes
     )
 
 
 def _named_strips(cad_file: CadFile) -> tuple[list[StripInput], list[str]]:
     strips, reasons = [], []
     for name, found in _rails_by_strip(cad_file).items():
-        rail_p, rail_q = (_one_rail(cad_file, name, rail, found.get(rail, [])) for rail in _RAILS)
+        rail_p, rail_q = (_one_rail(cad_file, name, rail, found.get(rail, [])) for rail in RAILS)
         strips.append(StripInput(name or settings.STRIP_NAME, rail_p, rail_q))
         reasons += [f"P is {rail_p}, by its name", f"Q is {rail_q}, by its name"]
     return strips, reasons
@@ -97,14 +86,14 @@ def _rails_by_strip(cad_file: CadFile) -> dict[str, dict[str, list[NamedShape]]]
     """Groups the named rails by strip; strips differing in case only are one if P or Q lacks."""
     rails: dict[str, dict[str, list[NamedShape]]] = {}
     for curve in cad_file.curves():
-        role = _role(curve.name)
+        role = rail_role(curve.name)
         if role is not None:
             rails.setdefault(role[0], {}).setdefault(role[1], []).append(curve)
-    for name in [name for name, found in rails.items() if len(found) < len(_RAILS)]:
+    for name in [name for name, found in rails.items() if len(found) < len(RAILS)]:
         alike = [
             other
             for other, found in rails.items()
-            if other.casefold() == name.casefold() and len(found) < len(_RAILS)
+            if other.casefold() == name.casefold() and len(found) < len(RAILS)
         ]
         for other in alike[1:]:
             for rail, curves in rails.pop(other).items():
@@ -179,7 +168,7 @@ def _strip_by_hand(
             )
     if rail_p is rail_q:
         raise _fail(cad_file, f"--p and --q both choose {rail_p} - choose two curves")
-    role = _role(rail_p.name)
+    role = rail_role(rail_p.name)
     name = (role[0] if role else "") or settings.STRIP_NAME
     reasons = [
         f"P is {rail_p}, {'as chosen' if p is not None else 'the counterpart of the chosen Q'}",
@@ -191,12 +180,12 @@ def _strip_by_hand(
 def _counterpart(cad_file: CadFile, other: NamedShape | None, rail: str) -> NamedShape:
     """Finds the rail that was not chosen: by its name, else as the only other curve."""
     rest = [curve for curve in cad_file.curves() if curve is not other]
-    role = _role(other.name) if other is not None else None
+    role = rail_role(other.name) if other is not None else None
     strip = role[0] if role else ""
     named = [
         curve
         for curve in rest
-        if (found := _role(curve.name)) and found[0] == strip and found[1] == rail
+        if (found := rail_role(curve.name)) and found[0] == strip and found[1] == rail
     ]
     for fits in (named, rest):
         if len(fits) == 1:
@@ -217,7 +206,7 @@ def _picked(cad_file: CadFile, text: str, option: str) -> NamedShape:
     by_index = [shape for shape in shapes if digits.isdecimal() and shape.index == int(digits)]
     by_case = [shape for shape in shapes if shape.name.casefold() == wanted.casefold()]
     for fits in (by_name, by_index, by_case if wanted else []):
-        suited = [shape for shape in fits if shape.is_curve == (option != _UPPER)] or fits
+        suited = [shape for shape in fits if shape.is_curve == (option != UPPER)] or fits
         if len(suited) == 1:
             return suited[0]
         if suited:
@@ -237,16 +226,16 @@ def _upper(
     cad_file: CadFile, upper: str | None, *, is_named: bool
 ) -> tuple[NamedShape | None, str]:
     if upper is not None:
-        chosen = _picked(cad_file, upper, _UPPER)
+        chosen = _picked(cad_file, upper, UPPER)
         if chosen.is_curve or chosen.measure <= 0.0:
             raise _fail(cad_file, f"--upper chooses {chosen}, an upper has faces - choose another")
         return chosen, f"upper is {chosen}, as chosen"
     named = [
         shape
         for shape in cad_file.shapes
-        if shape.name.casefold() == _UPPER and not shape.is_curve and shape.measure > 0.0
+        if shape.name.casefold() == UPPER and not shape.is_curve and shape.measure > 0.0
     ]
-    fits = [shape for shape in named if shape.name == _UPPER] or named
+    fits = [shape for shape in named if shape.name == UPPER] or named
     if len(fits) == 1:
         return fits[0], f"upper is {fits[0]}, by its name"
     surfaces = cad_file.surfaces()

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import io
 import re
+from dataclasses import replace
 from itertools import groupby
 from typing import Final
 
@@ -13,11 +14,12 @@ from OCP.STEPCAFControl import STEPCAFControl_Reader
 from .collect import Found, listed, take_apart
 from .kernel import KERNEL_ERRORS, as_edge, edges_of, kind_name
 from .loose_edges import chain_edges
-from .shapes import CURVE_KINDS, CadFile
+from .shapes import CURVE_KINDS, CadFile, has_role
 from .sniff import STEP, Source
+from .step_names import curve_names
 from .step_text import check_step, length_units, plain_text, why_no_shape
 from .units import check_unit, unit_words
-from .xde import Leaf, leaves_of, new_document, set_parameter, silence_kernel
+from .xde import Leaf, leaves_of, new_document, proper_name, set_parameter, silence_kernel
 
 _NAMED_SURFACE: Final = re.compile(
     rb"\b(?:ADVANCED_FACE|FACE_SURFACE|OPEN_SHELL|CLOSED_SHELL)\s*\(\s*'(?!'|NONE'|Unnamed')"
@@ -39,7 +41,7 @@ def read(source: Source, unit: str | None) -> CadFile:
     declared = length_units(text)
     mm_per_unit = check_unit(source, declared, unit)
     leaves = _leaves(source, text)
-    shapes = listed(source, _found(leaves), mm_per_unit)
+    shapes = listed(source, _found(leaves, text), mm_per_unit)
     if not any(shape.measure > 0.0 for shape in shapes):
         raise source.fail(why_no_shape(text))
     words = unit_words(declared, unit)
@@ -66,35 +68,57 @@ def _leaves(source: Source, text: bytes) -> list[Leaf]:
         raise source.fail(f"damaged: the CAD kernel fails on it ({words})") from error
 
 
-def _found(leaves: list[Leaf]) -> list[Found]:
+def _found(leaves: list[Leaf], text: bytes) -> list[Found]:
     """Returns what can be chosen: per named occurrence the edges that belong together joined."""
+    own_names = curve_names(text) if len(leaves) == 1 else []
     found: list[Found] = []
     for _, group in groupby(leaves, key=lambda leaf: leaf.named_at):
-        found += _found_in_group(list(group))
+        found += _found_in_group(list(group), own_names)
     curves = [item for item in found if kind_name(item.shape) in CURVE_KINDS]
     return _loosened(found) if len(curves) == 1 else found
 
 
-def _found_in_group(leaves: list[Leaf]) -> list[Found]:
+def _found_in_group(leaves: list[Leaf], own_names: list[str]) -> list[Found]:
     pieces = [item for leaf in leaves for item in take_apart(leaf.shape, leaf.name, leaf.color)]
+    pieces = _renamed(pieces, own_names)
     is_loose = [kind_name(item.shape) == "edge" for item in pieces]
     loose = [item for item, is_edge in zip(pieces, is_loose, strict=True) if is_edge]
     rest = [item for item, is_edge in zip(pieces, is_loose, strict=True) if not is_edge]
-    chains = chain_edges([as_edge(item.shape) for item in loose])
-    named = [
+    inner = [
         Found(shape, name, is_free=False) for leaf in leaves for name, shape in leaf.named_surfaces
     ]
-    first = loose[0] if loose else Found(leaves[0].shape)
-    return [*rest, *(Found(chain, first.name, first.color) for chain in chains), *named]
+    return [*rest, *_chained(loose), *inner]
+
+
+def _renamed(pieces: list[Found], own_names: list[str]) -> list[Found]:
+    """Gives curves the names that the file has for each, if it has one entry per curve."""
+    curves = [i for i, item in enumerate(pieces) if kind_name(item.shape) in CURVE_KINDS]
+    if len(curves) != len(own_names):
+        return pieces
+    named = list(pieces)
+    for i, name in zip(curves, own_names, strict=True):
+        named[i] = replace(pieces[i], name=proper_name(name) or pieces[i].name)
+    return named
+
+
+def _chained(loose: list[Found]) -> list[Found]:
+    by_name: dict[str, list[Found]] = {}
+    for item in loose:
+        by_name.setdefault(item.name, []).append(item)
+    return [
+        Found(chain, name, items[0].color)
+        for name, items in by_name.items()
+        for chain in chain_edges([as_edge(item.shape) for item in items])
+    ]
 
 
 def _loosened(found: list[Found]) -> list[Found]:
-    """Takes an unnamed wire of two edges, the only curve, apart: two rails that meet at an end."""
+    """Takes a wire of two edges, the only curve, apart: they are two rails that meet at an end."""
     apart: list[Found] = []
     for item in found:
         edges = edges_of(item.shape) if kind_name(item.shape) == "wire" else []
-        if len(edges) == 2 and not item.name:
-            apart += [Found(edge, "", item.color) for edge in edges]
+        if len(edges) == 2 and not has_role(item.name):
+            apart += [replace(item, shape=edge) for edge in edges]
         else:
             apart.append(item)
     return apart

@@ -12,6 +12,20 @@ if TYPE_CHECKING:
 
 CURVE_KINDS: Final = ("edge", "wire")
 SURFACE_KINDS: Final = ("face", "shell", "compound")
+UPPER: Final = "upper"
+RAILS: Final = ("P", "Q")
+
+
+def rail_role(name: str) -> tuple[str, str] | None:
+    """Splits ``<strip>:P``, in any case, into the strip (may be empty) and ``P``; else None."""
+    strip, _, rail = name.rpartition(":")
+    rail = rail.strip().upper()
+    return (strip.strip(), rail) if rail in RAILS else None
+
+
+def has_role(name: str) -> bool:
+    """Tells whether a name says what its shape is for: a rail or the upper."""
+    return rail_role(name) is not None or name.casefold() == UPPER
 
 
 @dataclass(frozen=True, slots=True, eq=False)

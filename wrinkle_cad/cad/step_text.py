@@ -29,7 +29,18 @@ _SI_PREFIX: Final = {
     b"DECI": "dm",
     b"KILO": "km",
 }
-_UNIT_WORDS: Final = {"metre": "m", "millimetre": "mm", "millimeter": "mm", "meter": "m"}
+_UNIT_WORDS: Final = {
+    "metre": "m",
+    "meter": "m",
+    "millimetre": "mm",
+    "millimeter": "mm",
+    "centimetre": "cm",
+    "centimeter": "cm",
+    "in": "inch",
+    "inches": "inch",
+    "foot": "ft",
+    "feet": "ft",
+}
 
 Statements = dict[int, bytes]
 

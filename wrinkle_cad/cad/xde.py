@@ -33,6 +33,8 @@ from OCP.XCAFDoc import (
     XCAFDoc_ShapeTool,
 )
 
+from .shapes import has_role
+
 try:  # OCP 7.9
     from OCP.TDF import TDF_LabelSequence
 except ImportError:  # OCP 8.0 keeps every collection in one module
@@ -45,7 +47,6 @@ _AUTOMATIC: Final = re.compile(
     r"Open CASCADE STEP translator.*|Open CASCADE Shape Model|=>\[[\d:]+\]|NONE|Unnamed"
     r"|COMPOUND|COMPSOLID|SOLID|SHELL|FACE|WIRE|EDGE|VERTEX|SHAPE|ASSEMBLY"
 )
-_BY_CONVENTION: Final = re.compile(r"(?:.*:)?[PpQq]|[Uu][Pp][Pp][Ee][Rr]")
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -162,7 +163,7 @@ def _components(product: TDF_Label) -> list[TDF_Label]:
 def _own_name(label: TDF_Label, product: TDF_Label, *, is_repeated: bool) -> str:
     """Chooses between the name of an instance and that of its product."""
     instance, name = _name(label), _name(product)
-    if instance and (is_repeated or not name or _BY_CONVENTION.fullmatch(instance)):
+    if instance and (is_repeated or not name or has_role(instance)):
         return instance
     return name
 
@@ -173,7 +174,12 @@ def _name(label: TDF_Label) -> str:
         return ""
     attribute = TDataStd_Name()
     label.FindAttribute(TDataStd_Name.GetID_s(), attribute)
-    name = printable(_decoded_twice(attribute.Get().ToExtString())).strip()
+    return proper_name(attribute.Get().ToExtString())
+
+
+def proper_name(raw: str) -> str:
+    """Returns a name as a person gave it: empty if a program did, repaired, without line ends."""
+    name = printable(_decoded_twice(raw)).strip()
     return "" if _AUTOMATIC.fullmatch(name) else name
 
 
