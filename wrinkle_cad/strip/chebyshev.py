@@ -14,10 +14,11 @@ from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
 from wrinkle_cad.errors import InputError
+
+from .compiled import compiled
 
 FloatArray = NDArray[np.float64]
 PointAt = Callable[[FloatArray], FloatArray]
@@ -100,7 +101,7 @@ def fit_cells(
     Args:
         point_at: the curve, from (k,) parameters to (k, 3) points in mm.
         edges: (c + 1,) float64, increasing: where cells begin and end at first; all are kept.
-        accuracy: mm; how close the polynomials are to come, round-off of the coordinates permitting.
+        accuracy: mm; how close the polynomials are to come, as far as round-off permits.
         share_of_extent: they also come this close as a share of the curve's extent.
 
     Returns:
@@ -167,7 +168,7 @@ def _can_be_halved(
     return wide
 
 
-@njit(cache=True)
+@compiled
 def point_in_cell(coefficients: FloatArray, u: float) -> tuple[float, float, float]:
     """Evaluates one cell's polynomials (Clenshaw) at u in [-1, 1]."""
     twice = 2.0 * u
@@ -184,7 +185,7 @@ def point_in_cell(coefficients: FloatArray, u: float) -> tuple[float, float, flo
     )
 
 
-@njit(cache=True)
+@compiled
 def point_in_cells(
     edges: FloatArray, coefficients: FloatArray, parameter: float
 ) -> tuple[float, float, float]:

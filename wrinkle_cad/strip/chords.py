@@ -13,10 +13,10 @@ from __future__ import annotations
 from typing import Final
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
 from .chebyshev import FloatArray, point_in_cell, point_in_cells
+from .compiled import compiled
 
 IndexArray = NDArray[np.int64]
 
@@ -28,7 +28,7 @@ RETRIES: Final = (1.0, 0.98, 0.93, 0.85, 0.7, 0.5, 0.3)
 DEEPEST: Final = 48
 
 
-@njit(cache=True)
+@compiled
 def _gap2(
     x: float, y: float, z: float, a: tuple[float, float, float], b: tuple[float, float, float]
 ) -> float:
@@ -42,7 +42,7 @@ def _gap2(
     return vx * vx + vy * vy + vz * vz
 
 
-@njit(cache=True)
+@compiled
 def tabulate(
     edges: FloatArray, coefficients: FloatArray, sag: float, spacing: float, most: int
 ) -> tuple[FloatArray, FloatArray]:
@@ -96,7 +96,7 @@ def tabulate(
     return t[: count + 1], x[: count + 1]
 
 
-@njit(cache=True)
+@compiled
 def _holds(
     x: FloatArray,
     first: int,
@@ -117,7 +117,7 @@ def _holds(
     return True
 
 
-@njit(cache=True)
+@compiled
 def _horizon(
     x: FloatArray,
     first: int,
@@ -152,7 +152,7 @@ def _horizon(
     return end
 
 
-@njit(cache=True)
+@compiled
 def _refine(
     curve: tuple[FloatArray, FloatArray, FloatArray, FloatArray],
     first: int,
@@ -174,7 +174,7 @@ def _refine(
     return low, found
 
 
-@njit(cache=True)
+@compiled
 def _greedy(
     curve: tuple[FloatArray, FloatArray, FloatArray, FloatArray],
     start: int,
@@ -211,13 +211,13 @@ def _greedy(
     return -1
 
 
-@njit(cache=True)
+@compiled
 def _scaled(limits: tuple[float, float, float], share: float) -> tuple[float, float, float]:
     """Limits for chords ``share`` times as long: the bulge of a chord grows as its square."""
     return limits[0] * share * share, limits[1] * share, limits[2]
 
 
-@njit(cache=True)
+@compiled
 def _even_piece(
     curve: tuple[FloatArray, FloatArray, FloatArray, FloatArray],
     start: int,
@@ -250,7 +250,7 @@ def _even_piece(
     return count
 
 
-@njit(cache=True)
+@compiled
 def place_chords(
     t: FloatArray,
     x: FloatArray,

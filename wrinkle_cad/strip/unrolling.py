@@ -1,0 +1,246 @@
+"""A triangulated strip in the plane, every length along its surface as in space."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from wrinkle_cad.errors import InputError
+from wrinkle_cad.settings import (
+    TURNED_BACK_PER_TOLERANCE,
+    UNROLLING_ACCURACY,
+)
+
+from .chebyshev import FloatArray, PointAt, fit_cells
+from .development import (
+    THINNING_SHARE,
+    DevelopedRail,
+    develop_rail,
+    place_chain,
+    thinned,
+)
+from .overlap import is_overlapping
+from .sampling import Samples
+from .triangulation import P_STEP, Triangulation
+
+IndexArray = NDArray[np.int64]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Unrolling:
+    """A strip in the plane, right side up: Q on the left of P, p[0] at the origin, q[0] above it.
+
+    Every array is read-only.
+    """
+
+    p: FloatArray
+    """(m, 2) float64, mm: flat positions of the samples of P."""
+    q: FloatArray
+    """(n, 2) float64, mm: flat positions of the samples of Q."""
+    p_line: FloatArray
+    """(k, 2) float64, mm: flat rail P as a polyline through all its samples."""
+    q_line: FloatArray
+    """(l, 2) float64, mm: flat rail Q as a polyline through all its samples."""
+    p_arc: FloatArray
+    """(k,) float64, mm: length in space along P from its start to each point of p_line."""
+    q_arc: FloatArray
+    """(l,) float64, mm: length in space along Q from its start to each point of q_line."""
+    p_index: IndexArray
+    """(m,) int64: where the samples of P stand in p_line."""
+    q_index: IndexArray
+    """(n,) int64: where the samples of Q stand in q_line."""
+    p_length: float
+    """mm: length of the flat rail P (of the curve that p_line follows)."""
+    q_length: float
+    """mm: length of the flat rail Q."""
+    area: float
+    """mm2: of the flat strip, overlaps counted as often as they are covered."""
+    overlaps: bool
+    """Whether the flat strip lies over itself, to within the chords between samples."""
+    turned_back_count: int
+    """Cones whose curve segment turns back, seen from the apex: folded in space, unfolded here."""
+
+    def __post_init__(self) -> None:
+        for name in ("p", "q", "p_line", "q_line", "p_arc", "q_arc", "p_index", "q_index"):
+            getattr(self, name).setflags(write=False)
+
+
+def unroll(triangulation: Triangulation) -> Unrolling:
+    """Lays the flat triangles of a strip into the plane.
+
+    A triangle without area is laid out along its bridge. Where both rails start in one point, the
+    first bank edge runs along -y.
+
+    Args:
+        triangulation: the strip.
+
+    Returns:
+        The strip in the plane, every bank edge and bridge as long as in space. Its lines are the
+        samples, its arc lengths those of the chords.
+    """
+    strip = _Chain(triangulation)
+    outward = strip.before - strip.apex
+    along = strip.after - strip.before
+    doubled = np.linalg.norm(np.cross(outward, along), axis=1)
+    angles = np.arctan2(doubled, np.sum(outward * (strip.after - strip.apex), axis=1))
+    p, q, _, _ = place_chain(triangulation.steps, angles, strip.radii, strip.start)
+    p_arc, q_arc = _chord_arc(triangulation.p), _chord_arc(triangulation.q)
+    return Unrolling(
+        p=p,
+        q=q,
+        p_line=p,
+        q_line=q,
+        p_arc=p_arc,
+        q_arc=q_arc,
+        p_index=np.arange(len(p)),
+        q_index=np.arange(len(q)),
+        p_length=float(p_arc[-1]),
+        q_length=float(q_arc[-1]),
+        area=0.5 * float(np.sum(doubled)),
+        overlaps=is_overlapping(p, q),
+        turned_back_count=0,
+    )
+
+
+def unroll_cones(
+    triangulation: Triangulation,
+    p_samples: Samples,
+    q_samples: Samples,
+    p_at: PointAt,
+    q_at: PointAt,
+    *,
+    tolerance: float,
+) -> Unrolling:
+    """Lays a strip of cones into the plane: each triangle's bank edge replaced by the exact curve.
+
+    The cone over a P-step has its apex at q[j] and ends in the curve between the samples p[i] and
+    p[i+1]; a Q-step likewise. Its polar angle is the integral of sqrt(1 - r'(s)^2) / r(s) over the
+    curve's arc length s, with r the distance from the apex. Derivatives come from polynomials of
+    degree 16 between samples, halved where the curve needs it, so a curve with knots inside a
+    segment (C1 or smoother) is followed as well. Where a segment turns back as seen from its apex
+    the cone is folded by 180 degrees in space; it is unfolded here and counted. An apex may be an
+    end of its segment (rails that meet).
+
+    Args:
+        triangulation: the strip, its p and q the points of the samples.
+        p_samples: where P was sampled; each corner of the curve (not C1) among the samples.
+        q_samples: where Q was sampled, likewise.
+        p_at: curve P, from (k,) parameters to (k, 3) points in mm; called some ten times.
+        q_at: curve Q, likewise.
+        tolerance: mm; the flat lines follow the flat curves at least this closely.
+
+    Returns:
+        The strip in the plane; seam lengths are those of the curves, area that of the cones.
+
+    Raises:
+        InputError: the tolerance is no positive length, the samples are not those of the
+            triangulation, or a curve is not finite or jumps.
+    """
+    if not (math.isfinite(tolerance) and tolerance > 0):
+        raise InputError(
+            f"tolerance - is {tolerance} mm - must be finite and above 0 mm - give a length in mm"
+        )
+    _check_samples("P", p_samples, triangulation.p)
+    _check_samples("Q", q_samples, triangulation.q)
+    strip = _Chain(triangulation)
+    is_p = strip.is_p
+    flat_p = _developed(p_samples, p_at, strip.apex[is_p], tolerance)
+    flat_q = _developed(q_samples, q_at, strip.apex[~is_p], tolerance)
+    angles = np.empty(len(is_p))
+    angles[is_p] = flat_p.angle[_last_of_segments(flat_p)]
+    angles[~is_p] = flat_q.angle[_last_of_segments(flat_q)]
+    p, q, p_from, q_from = place_chain(triangulation.steps, angles, strip.radii, strip.start)
+    i, j = strip.bridges.T
+    p_line, p_arc, p_index = _line(p, q[j[is_p]], p_from, flat_p, tolerance)
+    q_line, q_arc, q_index = _line(q, p[i[~is_p]], -q_from, flat_q, tolerance, turn=-1)
+    limit = TURNED_BACK_PER_TOLERANCE * tolerance
+    backs = (strip.radii[is_p] * flat_p.back, strip.radii[~is_p] * flat_q.back)
+    return Unrolling(
+        p=p,
+        q=q,
+        p_line=p_line,
+        q_line=q_line,
+        p_arc=p_arc,
+        q_arc=q_arc,
+        p_index=p_index,
+        q_index=q_index,
+        p_length=float(p_arc[-1]),
+        q_length=float(q_arc[-1]),
+        area=flat_p.area + flat_q.area,
+        overlaps=is_overlapping(p, q),
+        turned_back_count=int(sum(np.sum(back > limit) for back in backs)),
+    )
+
+
+class _Chain:
+    """The triangles of a strip as apex, bank edge and closing bridge, one row per step."""
+
+    def __init__(self, triangulation: Triangulation) -> None:
+        points_p, points_q = triangulation.p, triangulation.q
+        self.is_p = triangulation.steps == P_STEP
+        self.bridges = triangulation.bridges[:-1]
+        i, j = self.bridges.T
+        last_i, last_j = triangulation.bridges[1:].T
+        choose = self.is_p[:, None]
+        self.apex = np.where(choose, points_q[j], points_p[i])
+        self.before = np.where(choose, points_p[i], points_q[j])
+        self.after = np.where(choose, points_p[last_i], points_q[last_j])
+        self.radii = np.linalg.norm(self.after - self.apex, axis=1)
+        self.start = float(np.linalg.norm(points_p[0] - points_q[0]))
+
+
+def _chord_arc(points: FloatArray) -> FloatArray:
+    chords = np.linalg.norm(np.diff(points, axis=0), axis=1)
+    return np.concatenate(([0.0], np.cumsum(chords)))
+
+
+def _check_samples(name: str, samples: Samples, points: FloatArray) -> None:
+    if samples.points.shape != points.shape:
+        raise InputError(
+            f"{name} - {len(samples.points)} samples for {len(points)} points of the strip - they "
+            "must be the same - pass the samples that were triangulated"
+        )
+    gap = float(np.max(np.abs(samples.points - points)))
+    if gap > 1e-9 * float(np.max(np.abs(points))):
+        raise InputError(
+            f"{name} - samples lie up to {gap:.3g} mm from the strip's points - they must be the "
+            "same - pass the samples that were triangulated"
+        )
+
+
+def _developed(
+    samples: Samples, point_at: PointAt, apexes: FloatArray, tolerance: float
+) -> DevelopedRail:
+    cells = fit_cells(point_at, samples.parameters, math.inf, share_of_extent=UNROLLING_ACCURACY)
+    return develop_rail(cells, samples.parameters, apexes, tolerance)
+
+
+def _last_of_segments(flat: DevelopedRail) -> IndexArray:
+    """Where the segments end among the points of a developed rail."""
+    ends: IndexArray = np.append(np.flatnonzero(np.diff(flat.segment)), len(flat.segment) - 1)
+    return ends
+
+
+def _line(
+    samples: FloatArray,
+    apexes: FloatArray,
+    outward: FloatArray,
+    flat: DevelopedRail,
+    tolerance: float,
+    turn: int = 1,
+) -> tuple[FloatArray, FloatArray, IndexArray]:
+    """A flat rail as a polyline, its arc lengths, and where the samples stand in it."""
+    k = flat.segment
+    x, y = outward[k].T
+    cosine, sine = np.cos(flat.angle), turn * np.sin(flat.angle)
+    turned = np.stack((x * cosine - y * sine, x * sine + y * cosine), axis=1)
+    line = np.concatenate((samples[:1], apexes[k] + flat.radius[:, None] * turned))
+    ends = _last_of_segments(flat) + 1
+    line[ends] = samples[1:]
+    keep = thinned(line, k, THINNING_SHARE * tolerance)
+    arc = np.concatenate(([0.0], flat.arc))
+    index = np.concatenate(([0], (np.cumsum(keep) - 1)[ends]))
+    return line[keep], arc[keep], index
