@@ -16,6 +16,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
 from . import settings
+from .batch_arguments import add_batch_arguments
 from .errors import InputError, WrinkleError
 
 if TYPE_CHECKING:
@@ -67,6 +68,7 @@ def _parser() -> argparse.ArgumentParser:
     parser.set_defaults(debug=False)
     commands = parser.add_subparsers(required=True, metavar="COMMAND")
     _add_run(commands)
+    _add_batch(commands)
     _add_inspect(commands)
     _add_doctor(commands)
     return parser
@@ -81,6 +83,14 @@ def _add_run(commands: Any) -> None:
     run.add_argument("input", type=Path, metavar="INPUT", help="STEP, IGES or BREP file")
     run.add_argument("--quiet", action="store_true", help="print failures only")
     _add_debug(run)
+
+
+def _add_batch(commands: Any) -> None:
+    batch = commands.add_parser("batch", help="make the strips of many files, unattended")
+    batch.set_defaults(command=_batch)
+    add_batch_arguments(batch)
+    add_job_arguments(batch)
+    _add_debug(batch)
 
 
 def add_job_arguments(parser: argparse.ArgumentParser) -> None:
@@ -202,6 +212,12 @@ def _print_done(outcome: JobDone) -> None:
         print(f"FAIL: {one_line(line)}")
     for path in outcome.outputs:
         print(path)
+
+
+def _batch(given: argparse.Namespace) -> int:
+    from .batch_screen import run_batch_command
+
+    return run_batch_command(given, job_keywords(given))
 
 
 def _inspect(given: argparse.Namespace) -> int:

@@ -25,19 +25,27 @@ PLANARITY_FLOOR_PER_COORDINATE: Final = 1e-13
 neighbouring spacings that a strip may have."""
 
 ROUND_OFF_PER_COORDINATE: Final = 1.5e-14
-"""A distance below this share of the largest coordinate is round-off (64 units in the last place)."""
+"""A distance below this share of the largest coordinate is round-off (64 last places)."""
 
 LARGEST_COORDINATE: Final = 1e9
-"""mm; beyond it squares and products of lengths are no longer safe, and the unit is surely wrong."""
+"""mm; beyond it products of lengths are no longer safe, and the unit is surely wrong."""
 
 STEEPEST_HALF_FOLD: Final = 1e6
-"""Tangent of half a fold angle from which a bridge counts as folded back on itself (180 degrees)."""
+"""Tangent of half a fold angle from which a bridge counts as folded back on itself."""
 
 INFLECTION_SAMPLES: Final = 2
 """An inflection bridge is at most this many samples from bridges bent either way."""
 
 INFLECTION_SAGITTAS: Final = 2.0
 """Neighbours share a tangent plane if no further from it than this many typical sagittas."""
+
+DOUBLE_INFLECTION_SAGITTAS: Final = 0.5
+"""The same where two changes of bending fall between samples: a strip that is only twisted
+alternates its folds when its neighbours lie further off than this."""
+
+COINCIDENT_SAGITTAS: Final = 0.3
+"""Samples this many typical sagittas of the other rail away from it may be of the same curve: a
+chord tolerance is a quarter of a sagitta."""
 
 TWIST_PER_FOLD: Final = 0.5
 """A gap is twist, not a crease, if more than this share of its largest fold is undone again."""

@@ -1,0 +1,70 @@
+"""What the tests of batches share."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+from tests.batch.stand_ins import job_by_content
+from wrinkle_cad.batch.conversion import ConversionOptions, convert
+from wrinkle_cad.batch.crew import WorkerCrew
+from wrinkle_cad.batch.ending import CrewLimits
+from wrinkle_cad.batch.events import BatchEvent, BatchSummary
+from wrinkle_cad.batch.inputs import find_sources
+from wrinkle_cad.batch.plan import plan_batch
+
+
+class Bench:
+    """A folder of inputs, a folder of outputs and a way to run a batch from one to the other."""
+
+    def __init__(self, folder: Path) -> None:
+        self.inputs = folder / "in"
+        self.outputs = folder / "out"
+        self.inputs.mkdir()
+        self.events: list[BatchEvent] = []
+
+    def put(self, **contents: str) -> None:
+        for name, content in contents.items():
+            path = self.inputs / f"{name}.step"
+            path.parent.mkdir(parents=True, exist_ok=True)
+            path.write_text(content)
+
+    def run(
+        self,
+        *,
+        workers: int = 1,
+        limits: CrewLimits | None = None,
+        keywords: dict[str, object] | None = None,
+        **options: object,
+    ) -> BatchSummary:
+        self.events = []
+        sources = find_sources([str(self.inputs)], self.outputs)
+        planned = plan_batch(sources.files, self.outputs, keywords=keywords)
+        crew = WorkerCrew(workers, limits or CrewLimits())
+        chosen = ConversionOptions(**{"job_function": job_by_content, **options})  # type: ignore[arg-type]
+        return convert(planned, self.outputs, crew, self.events.append, chosen)
+
+    def files(self) -> dict[str, bytes]:
+        """Everything under a final name, without the batch's own files."""
+        own = {"manifest.jsonl", "batch.log", "summary.csv", "index.html", ".wrinkle_cad.lock"}
+        return {
+            path.relative_to(self.outputs).as_posix(): path.read_bytes()
+            for path in sorted(self.outputs.rglob("*"))
+            if path.is_file() and path.name not in own
+        }
+
+
+@pytest.fixture
+def bench(tmp_path: Path) -> Bench:
+    return Bench(tmp_path)
+
+
+@pytest.fixture
+def make_bench(tmp_path: Path) -> Callable[[str], Bench]:
+    def make(name: str) -> Bench:
+        (tmp_path / name).mkdir()
+        return Bench(tmp_path / name)
+
+    return make

@@ -1,0 +1,156 @@
+"""From a worker's result to files under their final names, and the record about it."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import replace
+from datetime import UTC, datetime
+from pathlib import Path
+from typing import Any, Final
+
+from wrinkle_cad.errors import WrinkleError
+from wrinkle_cad.job import Job
+from wrinkle_cad.outcome import JobDone, JobFailed
+from wrinkle_cad.outputs import check_outputs_are_ours
+
+from .manifest import OutputFile, Record, record_to_line
+from .names import printable
+from .staging import commit_staging, discard_staging, flush_files, move_into_place
+from .task import TaskResult
+
+_SUMS: Final = ("interior_bridges", "invalid_bridges", "inflection_bridges")
+_SUMMED_MEASURES: Final = ("area_3d_mm2", "area_pattern_mm2")
+_LARGEST: Final = ("max_fold_deg", "max_twist_deg")
+
+
+def deliver(
+    job: Job,
+    staging: Path,
+    result: TaskResult,
+    *,
+    base: Record | None = None,
+    known_outputs: Iterable[str] = (),
+    on_commit: Callable[[Record], None] | None = None,
+) -> JobDone | JobFailed:
+    """Gives the outputs of a task their final names, all together or, after a failure, none.
+
+    Args:
+        job: with the final output folder.
+        staging: the folder in which the task worked; gone when this returns.
+        result: what came of the task.
+        base: the record to complete and keep with the files; none is kept when None.
+        known_outputs: names of files that are ours to replace whatever they hold now.
+        on_commit: called with the complete record once the outcome is certain.
+
+    Returns:
+        The outcome, with the final paths.
+
+    Raises:
+        OSError: raised by ``on_commit``.
+    """
+    outcome = result.outcome
+    record = base
+    ready = None
+    if isinstance(outcome, JobDone):
+        try:
+            _check_foreign(job, result.outputs, frozenset(known_outputs))
+            _unpack(staging, result.output_bytes)
+            record = None if base is None else _done_record(base, result, outcome)
+            line = "" if record is None else record_to_line(record)
+            ready = commit_staging(staging, line)
+        except (OSError, WrinkleError) as error:
+            outcome = _write_failure(job, outcome, error)
+    if isinstance(outcome, JobFailed):
+        discard_staging(staging)
+        record = None if base is None else failed_record(base, outcome)
+    if record is not None and on_commit is not None:
+        on_commit(record)
+    if ready is None or isinstance(outcome, JobFailed):
+        return replace(outcome, job=job)
+    try:
+        move_into_place(ready)
+    except OSError as error:
+        return _write_failure(job, outcome, error)
+    paths = tuple(job.output_dir / file.name for file in result.outputs)
+    return replace(outcome, job=job, outputs=paths)
+
+
+def failed_record(base: Record, failure: JobFailed) -> Record:
+    """Completes a record with a failure."""
+    return replace(
+        base,
+        outcome="failed",
+        phase=failure.phase,
+        error=failure.error,
+        message=printable(failure.message),
+        seconds=dict(failure.seconds),
+        finished=_now(),
+    )
+
+
+def figures_of(summary: Mapping[str, Any]) -> dict[str, Any]:
+    """The figures of a job that a table of many jobs shows, over all its strips.
+
+    Counts and areas are summed, folds and twists are the largest, ``developability`` is the share
+    of interior bridges that are locally convex, in per cent (100 without any bridge).
+    """
+    strips = [strip for strip in summary.get("strips", ()) if isinstance(strip, Mapping)]
+    if not strips:
+        return {}
+    figures: dict[str, Any] = {"strips": len(strips)}
+    for name in _SUMS:
+        figures[name] = sum(int(strip.get(name, 0)) for strip in strips)
+    for name in _SUMMED_MEASURES:
+        figures[name] = math.fsum(float(strip.get(name, 0.0)) for strip in strips)
+    for name in _LARGEST:
+        figures[name] = max(float(strip.get(name, 0.0)) for strip in strips)
+    figures["overlaps"] = any(bool(strip.get("overlaps")) for strip in strips)
+    interior, invalid = figures["interior_bridges"], figures["invalid_bridges"]
+    figures["developability"] = 100.0 * (1.0 - invalid / interior) if interior else 100.0
+    return figures
+
+
+def _done_record(base: Record, result: TaskResult, outcome: JobDone) -> Record:
+    return replace(
+        base,
+        outcome="done",
+        outputs=result.outputs,
+        figures=figures_of(outcome.summary),
+        missed_limits=tuple(printable(line) for line in outcome.missed_limits),
+        seconds=dict(outcome.seconds),
+        finished=_now(),
+    )
+
+
+def _check_foreign(job: Job, outputs: Iterable[OutputFile], known: frozenset[str]) -> None:
+    unknown = [file.name for file in outputs if file.name not in known]
+    prefix = f"{job.name}."
+    check_outputs_are_ours(job, tuple(name.removeprefix(prefix) for name in unknown))
+
+
+def _unpack(staging: Path, content: Mapping[str, bytes]) -> None:
+    for name, data in content.items():
+        (staging / name).write_bytes(data)
+    if content:
+        flush_files(staging, tuple(content))
+
+
+def _write_failure(job: Job, outcome: JobDone, error: Exception) -> JobFailed:
+    message = str(error)
+    if isinstance(error, OSError):
+        message = (
+            f"write outputs of {job.name} - {error.strerror or error} - a folder that can be"
+            " written, with room - correct it and run the same command again"
+        )
+    return JobFailed(
+        job=job,
+        phase="write",
+        error=type(error).__name__,
+        message=message,
+        seconds=outcome.seconds,
+    )
+
+
+def _now() -> str:
+    return datetime.now(UTC).isoformat(timespec="seconds")

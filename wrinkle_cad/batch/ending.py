@@ -1,0 +1,137 @@
+"""Why a worker ended before its job did: which signal, which limit, in one line."""
+
+from __future__ import annotations
+
+import signal
+from dataclasses import dataclass
+from typing import Final
+
+from wrinkle_cad import settings
+from wrinkle_cad.errors import InputError
+from wrinkle_cad.job import Job
+from wrinkle_cad.outcome import JobFailed
+
+from .names import printable
+from .worker import Confession
+
+GIB: Final = 1 << 30
+_MEMORY_SIGNALS: Final = (signal.SIGSEGV, signal.SIGABRT)
+MEMORY_ERRORS: Final = ("MemoryError", "_ArrayMemoryError")
+"""Names of the errors that Python and numpy raise when they are refused memory."""
+
+
+@dataclass(frozen=True, slots=True)
+class CrewLimits:
+    """Limits of one job; None is no limit."""
+
+    timeout_s: float | None = settings.BATCH_TIMEOUT_S
+    """Seconds from when a worker is given the job."""
+    memory_gib: float | None = settings.BATCH_MEMORY_GIB
+    """GiB of address space of the worker."""
+
+    def __post_init__(self) -> None:
+        """Checks the limits.
+
+        Raises:
+            InputError: a timeout that is not positive, too little memory.
+        """
+        if self.timeout_s is not None and not 0 < self.timeout_s < float("inf"):
+            raise InputError(f"--timeout - {self.timeout_s:g} s - above 0 - give seconds")
+        least = settings.BATCH_LEAST_MEMORY_GIB
+        if self.memory_gib is not None and not least <= self.memory_gib < float("inf"):
+            raise InputError(
+                f"--memory - {self.memory_gib:g} GiB - at least {least:g} GiB: the CAD kernel needs"
+                " more than half of that before it reads a file - give more"
+            )
+
+    @property
+    def memory_bytes(self) -> int | None:
+        """The memory limit in bytes."""
+        return None if self.memory_gib is None else int(self.memory_gib * GIB)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Ending:
+    """How a worker ended."""
+
+    exit_code: int | None
+    """As `multiprocessing` tells it: negative for a signal."""
+    is_late: bool
+    """Whether it was killed because its time was up."""
+    phase: str
+    """The phase that its job had reached."""
+    confession: Confession | None
+    """The exception that ended it."""
+    peak_bytes: int
+    """Most address space that it was seen to have."""
+    seconds: float
+    """How long it had the job."""
+    chatter: str
+    """The end of what it wrote to stderr."""
+
+
+def failure_of(job: Job, ending: Ending, limits: CrewLimits) -> JobFailed:
+    """Names the signal or the limit that ended a worker."""
+    error, message = _cause(ending, limits)
+    return JobFailed(
+        job=job,
+        phase=(ending.phase or "worker") if error == _confessed(ending) else "worker",
+        error=error,
+        message=message,
+        seconds={"total": ending.seconds},
+        trace=ending.chatter,
+    )
+
+
+def _cause(ending: Ending, limits: CrewLimits) -> tuple[str, str]:
+    where = f" in phase {ending.phase}" if ending.phase else " before the first phase"
+    if ending.is_late:
+        return "TimeLimit", (
+            f"time{where} - {ending.seconds:.1f} s - limit {limits.timeout_s:g} s - give more with"
+            " --timeout or a coarser --tolerance"
+        )
+    if _hit_memory(ending, limits):
+        peak = max(ending.peak_bytes, ending.confession.peak_bytes if ending.confession else 0)
+        return "MemoryLimit", (
+            f"memory{where} - {peak / GIB:.2f} GiB mapped when more was asked for"
+            f" ({_manner(ending)}) - limit {limits.memory_gib or 0:g} GiB - give more with --memory"
+            " or a coarser --tolerance"
+        )
+    if ending.confession is not None:
+        text = printable(" ".join(ending.confession.message.split())) or "no message"
+        if ending.confession.is_expected:
+            return ending.confession.error, text
+        return ending.confession.error, (
+            f"internal error{where} - {ending.confession.error}: {text} - none expected - please"
+            " report it with the file"
+        )
+    return "WorkerKilled", (
+        f"worker{where} - ended by {_manner(ending)} - it should live on - look at the file with"
+        " inspect, then try it alone with run"
+    )
+
+
+def _hit_memory(ending: Ending, limits: CrewLimits) -> bool:
+    if limits.memory_bytes is None:
+        return False
+    if _confessed(ending) in MEMORY_ERRORS:
+        # With a limit set, Python is refused memory by nothing else.
+        return True
+    is_memory_signal = ending.exit_code is not None and -ending.exit_code in _MEMORY_SIGNALS
+    return is_memory_signal and ending.peak_bytes > settings.BATCH_MEMORY_HIT * limits.memory_bytes
+
+
+def _confessed(ending: Ending) -> str:
+    return "" if ending.confession is None else ending.confession.error
+
+
+def _manner(ending: Ending) -> str:
+    if ending.confession is not None:
+        return ending.confession.error
+    code = ending.exit_code
+    if code is None or code >= 0:
+        return f"leaving with exit code {code}"
+    name = signal.Signals(-code).name if -code in set(signal.Signals) else f"signal {-code}"
+    if name == "SIGKILL":
+        return "SIGKILL (somebody, or the system being out of memory)"
+    return name

@@ -1,0 +1,162 @@
+"""run_batch: many jobs from Python, on worker processes or on an executor of the caller's."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterable, Iterator
+from concurrent.futures import Executor
+from dataclasses import replace
+from pathlib import Path, PurePosixPath
+
+from wrinkle_cad import settings
+from wrinkle_cad.errors import InputError
+from wrinkle_cad.job import Job
+from wrinkle_cad.outcome import JobDone, JobFailed
+
+from .crew import Crew, Event, Finished, WorkerCrew
+from .delivery import deliver
+from .ending import CrewLimits
+from .executor_crew import ExecutorCrew
+from .names import collision_key
+from .staging import discard_staging, open_staging
+from .task import JobFunction, Task
+
+
+def run_batch(
+    jobs: Iterable[Job],
+    *,
+    executor: Executor | None = None,
+    workers: int | None = None,
+    timeout: float | None = None,
+    memory: float | None = None,
+    job_function: JobFunction | None = None,
+) -> tuple[JobDone | JobFailed, ...]:
+    """Runs jobs side by side; a job that crashes, hangs or needs too much costs only itself.
+
+    Without an executor, each job runs in a worker process of its own making, with limits; such
+    processes import the caller's main module, so a script needs ``if __name__ == "__main__":``.
+    With an executor the jobs run there, and limits, which could not be kept, are refused.
+
+    Args:
+        jobs: the jobs; no two may write the same files.
+        executor: any `concurrent.futures.Executor`; it is not shut down. The jobs' files must be
+            reachable from where it runs them.
+        workers: how many processes at a time; the cores this process may use when None.
+        timeout: seconds per job; 600 when None.
+        memory: GiB of address space per job, 2 at least; 4 when None.
+        job_function: what to run for each job, importable by its name; `run_job` when None.
+
+    Returns:
+        An outcome for each job, in their order.
+
+    Raises:
+        InputError: two jobs write the same files, a limit is out of its range or was given
+            together with an executor.
+    """
+    todo = tuple(jobs)
+    _check_distinct(todo)
+    crew = make_crew(executor=executor, workers=workers, timeout=timeout, memory=memory)
+    outcomes: dict[int, JobDone | JobFailed] = {}
+    stagings: dict[int, Path] = {}
+    try:
+        for event in run_tasks(crew, _tasks(todo, stagings, outcomes, job_function)):
+            if isinstance(event, Finished):
+                staging = stagings.pop(event.key)
+                outcomes[event.key] = deliver(todo[event.key], staging, event.result)
+        crew.close()
+    finally:
+        crew.kill()
+        for staging in stagings.values():
+            discard_staging(staging)
+    return tuple(outcomes[key] for key in range(len(todo)))
+
+
+def make_crew(
+    *,
+    executor: Executor | None,
+    workers: int | None,
+    timeout: float | None,
+    memory: float | None,
+    in_flight: int = settings.BATCH_IN_FLIGHT,
+) -> Crew:
+    """Makes the crew that `run_batch`'s arguments ask for.
+
+    Raises:
+        InputError: a limit is out of its range or was given together with an executor.
+    """
+    if executor is not None:
+        for name, value in (("workers", workers), ("timeout", timeout), ("memory", memory)):
+            if value is not None:
+                raise InputError(
+                    f"{name} - {value:g} together with an executor - it cannot be kept there - set"
+                    " it up in the executor, or leave the executor out"
+                )
+        return ExecutorCrew(executor, in_flight)
+    if workers is not None and workers < 1:
+        raise InputError(f"workers - {workers} - at least 1 - give more")
+    limits = CrewLimits(
+        timeout_s=settings.BATCH_TIMEOUT_S if timeout is None else timeout,
+        memory_gib=settings.BATCH_MEMORY_GIB if memory is None else memory,
+    )
+    return WorkerCrew(workers or core_count(), limits)
+
+
+def run_tasks(crew: Crew, tasks: Iterator[tuple[int, Task]]) -> Iterator[Event | None]:
+    """Keeps a crew busy until the tasks are used up; tasks are asked for as room is made.
+
+    Yields:
+        What happens, and None at least once per tick.
+    """
+    is_more = True
+    while is_more or crew.is_busy():
+        while is_more and crew.has_room():
+            following = next(tasks, None)
+            if following is None:
+                is_more = False
+            else:
+                crew.give(*following)
+            yield None
+        if crew.is_busy():
+            yield from crew.wait()
+            yield None
+
+
+def core_count() -> int:
+    """How many cores this process may use."""
+    if hasattr(os, "sched_getaffinity"):
+        return len(os.sched_getaffinity(0))
+    return os.cpu_count() or 1
+
+
+def _tasks(
+    jobs: tuple[Job, ...],
+    stagings: dict[int, Path],
+    outcomes: dict[int, JobDone | JobFailed],
+    job_function: JobFunction | None,
+) -> Iterator[tuple[int, Task]]:
+    for key, job in enumerate(jobs):
+        try:
+            stagings[key] = open_staging(job.output_dir)
+        except OSError as error:
+            message = (
+                f"output folder {job.output_dir.name} - {error.strerror} - a folder that can be"
+                " written - give another one"
+            )
+            outcomes[key] = JobFailed(
+                job=job, phase="write", error=type(error).__name__, message=message
+            )
+            continue
+        aside = replace(job, input=job.input.absolute(), output_dir=stagings[key].absolute())
+        yield key, Task(job=aside, job_function=job_function)
+
+
+def _check_distinct(jobs: Iterable[Job]) -> None:
+    seen: set[str] = set()
+    for job in jobs:
+        key = collision_key(PurePosixPath((job.output_dir.absolute() / job.name).as_posix()))
+        if key in seen:
+            raise InputError(
+                f"jobs - two write {job.name} into {job.output_dir.name} - one name per job - give"
+                " them different names or folders"
+            )
+        seen.add(key)

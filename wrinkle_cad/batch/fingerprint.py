@@ -1,0 +1,53 @@
+"""Hashes of files and settings: what decides whether a file must be done again."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from collections.abc import Mapping
+from dataclasses import fields
+from pathlib import Path
+from typing import Any, Final
+
+from wrinkle_cad.job import Job
+
+_CHUNK: Final = 1 << 20
+_NOT_A_SETTING: Final = frozenset({"input", "output_dir"})
+
+
+def hash_file(path: Path) -> str:
+    """SHA-256 of a file's content, in hexadecimal.
+
+    Raises:
+        OSError: it cannot be read.
+    """
+    digest = hashlib.sha256()
+    with path.open("rb") as stream:
+        while chunk := stream.read(_CHUNK):
+            digest.update(chunk)
+    return digest.hexdigest()
+
+
+def hash_settings(job: Job, versions: Mapping[str, str]) -> str:
+    """SHA-256 of everything but the input's content that the outputs of a job depend on.
+
+    The name of the input file counts, since outputs mention it; its folder does not. A setting that
+    is a file (a material, a table of layers) counts by its content.
+
+    Args:
+        job: the settings.
+        versions: of every package at work, as `installed_versions` gives them.
+
+    Raises:
+        OSError: a file among the settings cannot be read.
+    """
+    values: dict[str, Any] = {"input": job.input.name, "versions": dict(versions)}
+    for field in fields(job):
+        if field.name not in _NOT_A_SETTING:
+            values[field.name] = _plain(getattr(job, field.name))
+    text = json.dumps(values, sort_keys=True, ensure_ascii=True, default=str)
+    return hashlib.sha256(text.encode("ascii")).hexdigest()
+
+
+def _plain(value: Any) -> Any:
+    return {"file": hash_file(value)} if isinstance(value, Path) else value

@@ -1,0 +1,140 @@
+"""Files, folders and patterns -> the input files of a batch and where their outputs belong."""
+
+from __future__ import annotations
+
+import glob
+import os
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass
+from pathlib import Path, PurePosixPath
+from typing import Final
+
+from wrinkle_cad.errors import InputError
+
+from .names import printable
+
+CAD_SUFFIXES: Final = (".step", ".stp", ".p21", ".iges", ".igs", ".brep", ".brp")
+
+
+@dataclass(frozen=True, slots=True)
+class Source:
+    """One input file of a batch."""
+
+    path: Path
+    """The file."""
+    folder: PurePosixPath
+    """Its folder below the deepest folder that holds every argument: outputs mirror it."""
+
+    @property
+    def label(self) -> str:
+        """Folder and name, for people: one line."""
+        return printable((self.folder / self.path.name).as_posix())
+
+
+@dataclass(frozen=True, slots=True)
+class Sources:
+    """What a search for input files found."""
+
+    files: tuple[Source, ...]
+    """The files, ordered by folder and name."""
+    notes: tuple[str, ...]
+    """One line for each folder that could not be read."""
+
+
+def find_sources(arguments: Sequence[str], output_dir: Path) -> Sources:
+    """Finds the input files that files, folders and glob patterns name.
+
+    A folder stands for every CAD file in and below it, hidden ones left out and links to folders
+    not followed; a file named outright is taken whatever its suffix. The output folder is never
+    searched. A file that is named twice counts once.
+
+    Args:
+        arguments: paths or patterns (``**`` matches folders of any depth).
+        output_dir: where the outputs of the batch go; need not exist.
+
+    Raises:
+        InputError: an argument names nothing, or the output folder is one of the folders named.
+    """
+    notes: list[str] = []
+    found: dict[str, Path] = {}
+    roots: list[Path] = []
+    for argument in arguments:
+        root, paths = _expand(argument, output_dir.resolve(), notes)
+        roots.append(root)
+        for path in paths:
+            found.setdefault(os.fspath(path.resolve()), path.absolute())
+    base = Path(os.path.commonpath([os.path.normpath(root.absolute()) for root in roots]))
+    sources = [_source(path, base) for path in found.values()]
+    sources.sort(key=lambda source: (source.folder.parts, os.fsencode(source.path.name)))
+    return Sources(tuple(sources), tuple(notes))
+
+
+def split_name(name: str) -> tuple[str, str]:
+    """Splits the name of a CAD file into its stem and its suffixes without the first dot."""
+    stem, tail = name, ""
+    if stem.lower().endswith(".gz") and len(stem) > len(".gz"):
+        stem, tail = stem[: -len(".gz")], stem[-len(".gz") :]
+    for suffix in CAD_SUFFIXES:
+        if stem.lower().endswith(suffix) and len(stem) > len(suffix):
+            return stem[: -len(suffix)], (stem[-len(suffix) :] + tail).lstrip(".")
+    return stem, tail.lstrip(".")
+
+
+def _expand(argument: str, output_dir: Path, notes: list[str]) -> tuple[Path, Iterable[Path]]:
+    path = Path(argument)
+    if path.is_dir():
+        if path.resolve() == output_dir:
+            raise InputError(
+                f"output folder {printable(argument)} - is also an input folder - inputs are never"
+                " written to - give another -o DIR"
+            )
+        return path, list(_files_below(path, output_dir, notes))
+    if path.exists():
+        return path.parent, [path]
+    if not glob.has_magic(argument):
+        raise InputError(f"input {printable(argument)} - no such file or folder - check the path")
+    matches = [Path(match) for match in glob.iglob(argument, recursive=True)]  # noqa: PTH207 - Path.glob takes no absolute patterns
+    files = [match for match in matches if _is_input(match, output_dir)]
+    if not files:
+        raise InputError(f"input {printable(argument)} - no CAD file matches - check the pattern")
+    return _fixed_part(argument), files
+
+
+def _files_below(folder: Path, output_dir: Path, notes: list[str]) -> Iterator[Path]:
+    def note(error: OSError) -> None:
+        where = printable(str(error.filename))
+        notes.append(f"folder {where} - {error.strerror} - left out - check its permissions")
+
+    for root, folders, names in os.walk(folder, onerror=note):
+        here = Path(root)
+        folders[:] = sorted(
+            name
+            for name in folders
+            if not name.startswith(".") and (here / name).resolve() != output_dir
+        )
+        yield from (here / name for name in names if _is_input(here / name, output_dir))
+
+
+def _is_input(path: Path, output_dir: Path) -> bool:
+    _, suffixes = split_name(path.name)
+    is_cad = f".{suffixes.split('.')[0].lower()}" in CAD_SUFFIXES
+    is_visible = not path.name.startswith(".")
+    return (
+        is_visible and is_cad and path.is_file() and not path.resolve().is_relative_to(output_dir)
+    )
+
+
+def _fixed_part(pattern: str) -> Path:
+    """The folder of a pattern down to its first part with a wildcard."""
+    fixed: list[str] = []
+    for part in Path(pattern).parts[:-1]:
+        if glob.has_magic(part):
+            break
+        fixed.append(part)
+    return Path(*fixed)
+
+
+def _source(path: Path, base: Path) -> Source:
+    folder = Path(os.path.normpath(path.parent))
+    relative = folder.relative_to(base) if folder.is_relative_to(base) else Path()
+    return Source(path, PurePosixPath(relative.as_posix()))

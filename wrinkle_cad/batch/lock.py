@@ -1,0 +1,50 @@
+"""One batch per folder: a lock that ends with the process that holds it."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Final
+
+from wrinkle_cad.errors import InputError
+
+LOCK_NAME: Final = ".wrinkle_cad.lock"
+
+
+@contextmanager
+def locked_folder(folder: Path) -> Iterator[None]:
+    """Holds a folder for this process; the system gives it free when the process ends, however.
+
+    Args:
+        folder: an existing folder that can be written to.
+
+    Raises:
+        InputError: another process holds it, or the system has no such locks (Windows).
+        OSError: the lock file cannot be made.
+    """
+    try:
+        import fcntl
+    except ImportError as error:
+        raise InputError(
+            "batch - this system has no POSIX file locks - Linux or macOS is needed - use run for"
+            " each file, or run_batch with an executor of your own"
+        ) from error
+    handle = os.open(folder / LOCK_NAME, os.O_RDWR | os.O_CREAT | os.O_CLOEXEC, 0o644)
+    try:
+        try:
+            fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except BlockingIOError as error:
+            holder = os.read(handle, 100).decode("ascii", "replace").strip() or "unknown"
+            raise InputError(
+                f"output folder {folder.name} - another batch is writing to it (process {holder}) -"
+                " one at a time - wait for it or give another -o DIR"
+            ) from error
+        os.ftruncate(handle, 0)
+        os.write(handle, f"{os.getpid()}\n".encode("ascii"))
+        # The file stays: removing it would let a third process lock a new file of that name
+        # while a second one still waits on the old.
+        yield
+    finally:
+        os.close(handle)

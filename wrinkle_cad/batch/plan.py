@@ -1,0 +1,115 @@
+"""What a batch is going to do: for each input its settings, its outputs' names, or why not."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from functools import partial
+from pathlib import Path, PurePosixPath
+from typing import Any, Final
+
+from wrinkle_cad import settings
+from wrinkle_cad.errors import JobError
+from wrinkle_cad.job import Job, make_job, read_job_toml
+
+from .inputs import Source, split_name
+from .names import apply_mask, check_mask, collision_key, safe_folder, safe_name
+
+FOLDER_TOML: Final = "job.toml"
+FILE_TOML: Final = ".job.toml"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class PlannedJob:
+    """One input of a batch and what will be done with it."""
+
+    source: Source
+    """The input."""
+    key: str
+    """Folder and stem of its outputs below the batch's folder; unique among those that run."""
+    job: Job
+    """The settings; the defaults where the input's own settings cannot be used."""
+    refusal: str = ""
+    """Why it cannot be done, on one line; empty when it can."""
+
+
+def plan_batch(
+    sources: Sequence[Source],
+    output_dir: Path,
+    *,
+    keywords: Mapping[str, Any] | None = None,
+    mask: str | None = None,
+) -> tuple[PlannedJob, ...]:
+    """Plans a batch; a file that cannot be done is planned with the reason.
+
+    A file's own settings are those in ``job.toml`` in its folder (unless that names another file as
+    its ``input``), then those in ``STEM.job.toml`` beside it, then the keywords. The folder of the
+    outputs is always the batch's. Of files whose outputs would have the same name, in the order
+    given, only the first is done.
+
+    Args:
+        sources: the inputs.
+        output_dir: the batch's folder.
+        keywords: settings for every file; a None counts as not given.
+        mask: names of the outputs, as `check_mask` takes it; ``name`` in a file's own settings
+            goes before the default mask but not before this one.
+
+    Raises:
+        JobError: the mask is broken.
+    """
+    if mask is not None:
+        check_mask(mask)
+    taken: dict[str, Source] = {}
+    planned = []
+    for number, source in enumerate(sources, start=1):
+        entry = _plan_one(source, number, output_dir, dict(keywords or {}), mask)
+        first = taken.setdefault(collision_key(PurePosixPath(entry.key)), source)
+        if first is not source and not entry.refusal:
+            refusal = (
+                f"name - {entry.key} is also the name of the outputs of {first.label} - one name"
+                ' per file - give for example --name "{stem}-{suffix}" or "{folder}-{stem}"'
+            )
+            entry = PlannedJob(source=source, key=entry.key, job=entry.job, refusal=refusal)
+        planned.append(entry)
+    return tuple(planned)
+
+
+def _plan_one(
+    source: Source, number: int, output_dir: Path, keywords: dict[str, Any], mask: str | None
+) -> PlannedJob:
+    stem, suffix = split_name(source.path.name)
+    fill = partial(apply_mask, stem=stem, suffix=suffix, folder=source.folder, number=number)
+    folder = safe_folder(source.folder)
+    target = output_dir / folder
+    default_name = fill(mask or settings.BATCH_NAME_MASK)
+    refusal = ""
+    try:
+        own = _own_settings(source, stem)
+        if mask is None and "name" in own:
+            default_name = safe_name(str(own["name"]))
+        merged = {**own, **{key: value for key, value in keywords.items() if value is not None}}
+        job = make_job(source.path, {**merged, "name": default_name, "output_dir": target})
+    except JobError as error:
+        refusal = str(error)
+        job = Job(input=source.path, name=default_name, output_dir=target)
+    if not refusal and not target.resolve().is_relative_to(output_dir.resolve()):
+        refusal = (
+            f"output folder {folder} - a link that leads out of {output_dir.name} - outputs stay"
+            " inside - remove the link"
+        )
+    key = (folder / default_name).as_posix()
+    return PlannedJob(source=source, key=key, job=job, refusal=refusal)
+
+
+def _own_settings(source: Source, stem: str) -> dict[str, Any]:
+    own: dict[str, Any] = {}
+    for path in (source.path.parent / FOLDER_TOML, source.path.parent / (stem + FILE_TOML)):
+        if not path.is_file():
+            continue
+        table = read_job_toml(path)
+        meant = table.get("input")
+        if meant is None or Path(meant).resolve() == source.path.resolve():
+            own.update(table)
+    own.pop("input", None)
+    own.pop("output_dir", None)
+    return own

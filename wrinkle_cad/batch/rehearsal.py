@@ -1,0 +1,47 @@
+"""What a batch would do, without doing any of it: nothing is written."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+
+from wrinkle_cad.versions import installed_versions
+
+from .conversion import base_record, is_up_to_date
+from .manifest import Manifest
+from .plan import PlannedJob
+
+DONE_BEFORE = "done before"
+TO_DO = "to do"
+
+
+def rehearse(
+    planned: Sequence[PlannedJob], folder: Path, *, force: bool = False
+) -> Iterator[tuple[PlannedJob, str]]:
+    """Tells for each planned file whether it is to be done, done before or cannot be done.
+
+    Args:
+        planned: from `plan_batch`, with the same folder.
+        folder: the batch's folder; need not exist.
+        force: whether files that are done already would be done again.
+
+    Yields:
+        The planned file, and `TO_DO`, `DONE_BEFORE` or why it cannot be done.
+
+    Raises:
+        OSError: there is a manifest that cannot be read.
+    """
+    manifest = Manifest(folder)
+    versions = installed_versions()
+    for entry in planned:
+        if entry.refusal:
+            yield entry, entry.refusal
+            continue
+        try:
+            base = base_record(entry, versions)
+        except OSError as error:
+            yield entry, f"{entry.source.label} - {error.strerror} - a file that can be read"
+            continue
+        earlier = manifest.latest(base.key, base.input)
+        is_done = not force and is_up_to_date(earlier, base, folder)
+        yield entry, DONE_BEFORE if is_done else TO_DO

@@ -1,0 +1,39 @@
+"""The flags of the command ``batch``; light, since every command line loads it."""
+
+from __future__ import annotations
+
+import argparse
+
+from . import settings
+
+
+def add_batch_arguments(parser: argparse.ArgumentParser) -> None:
+    """Adds the flags that only a batch has; those of a job are added by the caller."""
+    add = parser.add_argument
+    add("inputs", nargs="+", metavar="INPUT", help="files, folders, glob patterns")
+    add("--name", metavar="MASK", help="names of the outputs: {stem} {suffix} {folder} {number}")
+    add("--workers", type=int, metavar="N", help="processes at a time (one per core)")
+    add(
+        "--timeout",
+        type=float,
+        metavar="S",
+        help=f"seconds for one file ({settings.BATCH_TIMEOUT_S:g})",
+    )
+    add(
+        "--memory",
+        type=float,
+        metavar="GIB",
+        help=f"address space for one file in GiB ({settings.BATCH_MEMORY_GIB:g};"
+        f" at least {settings.BATCH_LEAST_MEMORY_GIB:g})",
+    )
+    add("--force", action="store_true", help="do again what is done already")
+    add("--dry-run", action="store_true", help="say what would be done, write nothing")
+    add("--scheduler", metavar="ADDRESS", help="run on an existing Dask cluster")
+    add(
+        "--ship-bytes",
+        action="store_true",
+        help="with --scheduler: its workers share no folder with this machine",
+    )
+    output = parser.add_mutually_exclusive_group()
+    output.add_argument("--quiet", action="store_true", help="print failures only")
+    output.add_argument("--json-lines", action="store_true", help="print one JSON value per line")

@@ -1,0 +1,226 @@
+"""The command ``batch`` as a person or a machine sees it: lines and exit codes."""
+
+from __future__ import annotations
+
+import argparse
+import json
+import sys
+from collections.abc import Iterator, Mapping
+from contextlib import ExitStack, contextmanager
+from dataclasses import asdict
+from pathlib import Path
+from typing import Any, Final, TextIO
+
+from .batch.conversion import ConversionOptions, convert
+from .batch.crew import Crew
+from .batch.events import (
+    BatchEvent,
+    BatchStarted,
+    BatchSummary,
+    FileFinished,
+    FilePhase,
+    FileSkipped,
+    Listener,
+)
+from .batch.executor import make_crew
+from .batch.inputs import find_sources
+from .batch.plan import PlannedJob, plan_batch
+from .batch.rehearsal import DONE_BEFORE, TO_DO, rehearse
+from .batch.summary import total_seconds
+from .errors import InputError
+
+DONE: Final = 0
+FAILED: Final = 1
+WRONG_USAGE: Final = 2
+INTERRUPTED: Final = 130
+
+
+def run_batch_command(given: argparse.Namespace, keywords: Mapping[str, Any]) -> int:
+    """Runs ``wrinkle-cad batch``.
+
+    Args:
+        given: the parsed arguments.
+        keywords: the settings of a job among them.
+
+    Returns:
+        The exit code: 0 done, 1 a file failed (or, with ``--strict``, misses a limit) or was not
+        come to, 2 wrong usage, 130 interrupted.
+
+    Raises:
+        ExportError: the output folder cannot be written to or its disk is full.
+    """
+    for stream in (sys.stdout, sys.stderr):
+        if hasattr(stream, "reconfigure"):
+            # Names of files may not fit the terminal's encoding.
+            stream.reconfigure(errors="backslashreplace")
+    settings_given = {
+        name: value for name, value in keywords.items() if name not in ("name", "output_dir")
+    }
+    try:
+        folder = _folder(given)
+        planned = _plan(given, settings_given, folder)
+        if given.dry_run:
+            return _rehearse(given, planned, folder)
+        return _convert(given, planned, folder)
+    except InputError as error:
+        _say(sys.stderr, f"wrinkle-cad: {error}")
+        return WRONG_USAGE
+
+
+def _folder(given: argparse.Namespace) -> Path:
+    if given.output_dir is None:
+        raise InputError("-o DIR - not given - a folder for the outputs - give one")
+    folder: Path = given.output_dir
+    return folder
+
+
+def _plan(
+    given: argparse.Namespace, keywords: Mapping[str, Any], folder: Path
+) -> tuple[PlannedJob, ...]:
+    sources = find_sources(given.inputs, folder)
+    for note in sources.notes:
+        _say(sys.stderr, f"wrinkle-cad: {note}")
+    if not sources.files:
+        raise InputError("input - no CAD file in the folders given - at least one - check the path")
+    return plan_batch(sources.files, folder, keywords=keywords, mask=given.name)
+
+
+def _rehearse(given: argparse.Namespace, planned: tuple[PlannedJob, ...], folder: Path) -> int:
+    is_refused = False
+    for entry, verdict in rehearse(planned, folder, force=given.force):
+        line = {"input": entry.source.label, "outputs": f"{entry.key}.*", "verdict": verdict}
+        is_refused |= verdict not in (TO_DO, DONE_BEFORE)
+        if given.json_lines:
+            _say(sys.stdout, json.dumps(line))
+        elif not given.quiet or verdict not in (TO_DO, DONE_BEFORE):
+            _say(sys.stdout, f"{line['input']} -> {line['outputs']}: {verdict}")
+    return FAILED if is_refused else DONE
+
+
+def _convert(given: argparse.Namespace, planned: tuple[PlannedJob, ...], folder: Path) -> int:
+    options = ConversionOptions(force=given.force, ship_bytes=given.ship_bytes)
+    counter = _Counter()
+    try:
+        with ExitStack() as stack:
+            crew = stack.enter_context(_crew(given))
+            shown = stack.enter_context(_listener(given, len(planned)))
+
+            def listen(event: BatchEvent) -> None:
+                counter.count(event)
+                shown(event)
+
+            summary = convert(planned, folder, crew, listen, options)
+    except KeyboardInterrupt:
+        _say(
+            sys.stderr,
+            f"interrupted - {counter.settled} of {len(planned)} files settled, nothing half-written"
+            " - run the same command again: it goes on where it stopped",
+        )
+        return INTERRUPTED
+    _show_summary(given, summary)
+    is_bad = summary.failed or summary.left
+    is_missed = summary.missed_limits and getattr(given, "strict", False)
+    return FAILED if is_bad or is_missed else DONE
+
+
+@contextmanager
+def _crew(given: argparse.Namespace) -> Iterator[Crew]:
+    limits = {"workers": given.workers, "timeout": given.timeout, "memory": given.memory}
+    if given.scheduler is None:
+        if given.ship_bytes:
+            raise InputError(
+                "--ship-bytes - without --scheduler - nowhere to ship to - leave it out"
+            )
+        yield make_crew(executor=None, **limits)
+        return
+    for name, value in limits.items():
+        if value is not None:
+            raise InputError(
+                f"--{name} {value:g} - together with --scheduler - the cluster's workers cannot be"
+                " held to it - set it up there, or leave it out"
+            )
+    from .batch.cluster import cluster_executor
+
+    with cluster_executor(given.scheduler) as (executor, in_flight):
+        yield make_crew(executor=executor, in_flight=in_flight, **limits)
+
+
+class _Counter:
+    def __init__(self) -> None:
+        self.settled = 0
+
+    def count(self, event: BatchEvent) -> None:
+        self.settled += isinstance(event, FileFinished | FileSkipped)
+
+
+@contextmanager
+def _listener(given: argparse.Namespace, total: int) -> Iterator[Listener]:
+    if given.json_lines:
+        yield _tell_machine
+    elif given.quiet:
+        yield _tell_failures
+    elif sys.stderr.isatty():
+        from .batch_display import live_display
+
+        with live_display(total) as listener:
+            yield listener
+    else:
+        yield _tell_lines
+
+
+def _tell_machine(event: BatchEvent) -> None:
+    if isinstance(event, BatchStarted):
+        line: dict[str, Any] = {"event": "started", "files": event.total}
+    elif isinstance(event, FilePhase):
+        line = {"event": "phase", "input": event.label, "phase": event.phase}
+    else:
+        kind = "skipped" if isinstance(event, FileSkipped) else "finished"
+        line = {"event": kind, **asdict(event.record)}
+    _say(sys.stdout, json.dumps(line))
+
+
+def _tell_failures(event: BatchEvent) -> None:
+    if isinstance(event, FileFinished) and not event.record.is_done:
+        _say(sys.stderr, f"wrinkle-cad: {failure_line(event)}")
+
+
+def _tell_lines(event: BatchEvent) -> None:
+    if isinstance(event, FileSkipped):
+        _say(sys.stdout, f"{event.label}: done before")
+    elif isinstance(event, FileFinished) and event.record.is_done:
+        _say(sys.stdout, f"{event.label}: {done_text(event)}")
+    else:
+        _tell_failures(event)
+
+
+def failure_line(event: FileFinished) -> str:
+    """A failed file in one line."""
+    return f"{event.label}: {event.record.message}"
+
+
+def done_text(event: FileFinished) -> str:
+    """What is worth saying about a file that was done."""
+    text = f"done in {total_seconds(event.record):.2f} s"
+    developability = event.record.figures.get("developability")
+    if developability is not None:
+        text += f", {developability:.1f}% of the bridges developable"
+    if event.record.missed_limits:
+        text += f", FAIL: {'; '.join(event.record.missed_limits)}"
+    return text
+
+
+def _show_summary(given: argparse.Namespace, summary: BatchSummary) -> None:
+    if given.json_lines:
+        line = {"event": "ended", **asdict(summary), "folder": str(summary.folder)}
+        _say(sys.stdout, json.dumps(line))
+    elif not given.quiet:
+        from .batch_display import print_summary
+
+        print_summary(summary)
+    if summary.stopped_by:
+        _say(sys.stderr, f"wrinkle-cad: {summary.stopped_by}")
+
+
+def _say(stream: TextIO, line: str) -> None:
+    stream.write(f"{line}\n")
+    stream.flush()
