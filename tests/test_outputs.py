@@ -1,0 +1,88 @@
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+
+from wrinkle_cad.errors import ExportError, JobError
+from wrinkle_cad.job import Job
+from wrinkle_cad.outputs import (
+    PAGE_MARK,
+    SCHEMA,
+    check_outputs_are_ours,
+    hashes_of,
+    output_paths,
+    outputs_together,
+)
+
+KINDS = ("step", "json", "html")
+
+
+@pytest.fixture
+def job(tmp_path: Path) -> Job:
+    source = tmp_path / "in" / "shoe.step"
+    source.parent.mkdir()
+    source.write_text("ISO-10303-21;")
+    return Job(input=source, output_dir=tmp_path / "out")
+
+
+def write_all(job: Job, content: str = "made") -> None:
+    with outputs_together(job, KINDS) as paths:
+        paths["step"].write_text(content)
+        paths["html"].write_text(f'{PAGE_MARK} 1">')
+        listed = {"schema": SCHEMA, "outputs": hashes_of({"step": paths["step"]})}
+        paths["json"].write_text(json.dumps(listed))
+
+
+def test_outputs_appear_under_their_names_and_leave_nothing_else(job: Job) -> None:
+    write_all(job)
+    assert sorted(path.name for path in job.output_dir.iterdir()) == [
+        "shoe.html",
+        "shoe.json",
+        "shoe.step",
+    ]
+
+
+def test_own_earlier_outputs_are_replaced(job: Job) -> None:
+    write_all(job, "first")
+    check_outputs_are_ours(job, KINDS)
+    write_all(job, "second")
+    assert (job.output_dir / "shoe.step").read_text() == "second"
+
+
+def test_nothing_appears_when_writing_fails_and_the_old_outputs_stay(job: Job) -> None:
+    write_all(job, "first")
+    with pytest.raises(RuntimeError), outputs_together(job, KINDS) as paths:
+        paths["step"].write_text("half")
+        raise RuntimeError
+    assert (job.output_dir / "shoe.step").read_text() == "first"
+    assert len(list(job.output_dir.iterdir())) == 3
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_a_file_of_somebody_else_is_not_replaced(job: Job, kind: str) -> None:
+    job.output_dir.mkdir()
+    output_paths(job, KINDS)[kind].write_text("{}")
+    with pytest.raises(JobError, match=rf"shoe\.{kind}"):
+        check_outputs_are_ours(job, KINDS)
+
+
+def test_an_own_output_that_was_changed_since_is_not_replaced(job: Job) -> None:
+    write_all(job)
+    (job.output_dir / "shoe.step").write_text("edited by hand")
+    with pytest.raises(JobError, match="changed since"):
+        check_outputs_are_ours(job, KINDS)
+
+
+def test_the_input_is_never_replaced(job: Job) -> None:
+    beside = Job(input=job.input, output_dir=job.input.parent)
+    with pytest.raises(JobError, match="replace the input"):
+        check_outputs_are_ours(beside, KINDS)
+
+
+def test_a_folder_that_cannot_be_made_is_named(tmp_path: Path, job: Job) -> None:
+    (tmp_path / "file").write_text("")
+    blocked = Job(input=job.input, output_dir=tmp_path / "file" / "out")
+    with pytest.raises(ExportError, match="out"), outputs_together(blocked, KINDS):
+        pass

@@ -1,0 +1,84 @@
+"""What NAME.json holds: the result of a job as plain values."""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from .findings import Finding
+from .job import Job
+from .outputs import SCHEMA, SCHEMA_VERSION
+from .versions import installed_versions
+
+if TYPE_CHECKING:
+    from .cad.choose import Chosen
+    from .cad.shapes import CadFile
+    from .report.material import Limits
+    from .strip_report import StripReport
+
+
+def summary_of(
+    job: Job,
+    file: CadFile,
+    chosen: Chosen,
+    reports: Sequence[StripReport],
+    findings: Sequence[Finding],
+    limits: Limits,
+) -> dict[str, Any]:
+    """Collects what is known before the outputs are written.
+
+    Args:
+        job: the settings.
+        file: what was read.
+        chosen: what was taken from the file.
+        reports: one per strip.
+        findings: what was noticed.
+        limits: what the strips are judged by.
+    """
+    from .report.verdict import judge
+
+    entries = [report.as_json() for report in reports]
+    return {
+        "schema": SCHEMA,
+        "schema_version": SCHEMA_VERSION,
+        "input": {
+            "file": job.input.name,
+            "format": file.format,
+            "unit": file.unit,
+            "reasons": list(chosen.reasons),
+        },
+        "settings": settings_as_json(job),
+        "versions": installed_versions(),
+        "strips": entries,
+        "verdict": judge(entries, limits).as_json(),
+        "findings": [asdict(finding) for finding in findings],
+    }
+
+
+def settings_as_json(job: Job) -> dict[str, Any]:
+    """The settings that shape the result: no folders, which differ between machines."""
+    left_out = {"input", "output_dir", "source_date_epoch"}
+    return {
+        key: value.name if isinstance(value, Path) else value
+        for key, value in asdict(job).items()
+        if key not in left_out
+    }
+
+
+def to_json(summary: Mapping[str, Any]) -> str:
+    """JSON text of a summary; what is not finite stands as null."""
+    return json.dumps(_plain(summary), ensure_ascii=False, indent=1, allow_nan=False) + "\n"
+
+
+def _plain(value: Any) -> Any:
+    if isinstance(value, float) and not math.isfinite(value):
+        return None
+    if isinstance(value, Mapping):
+        return {str(key): _plain(part) for key, part in value.items()}
+    if isinstance(value, list | tuple):
+        return [_plain(part) for part in value]
+    return value
