@@ -6,7 +6,7 @@ that neighbour.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,7 +20,6 @@ from wrinkle_cad import settings
 from wrinkle_cad.errors import CadError
 
 from .evaluation import PoleCurve
-from .kernel import vertices_of
 from .splines import curve_arrays
 
 Floats = NDArray[np.float64]
@@ -36,12 +35,18 @@ class BorderEdge:
     shape: PoleCurve
     """Its curve as numbers, over the edge's own parameter."""
 
-    is_forward: bool
+    start: TopoDS_Vertex
+    """The vertex where the edge starts."""
+
+    end: TopoDS_Vertex
+    """The vertex where the edge ends."""
+
+    is_forward: bool = True
     """Whether the border runs along the edge."""
 
     def flipped(self) -> BorderEdge:
         """Returns the edge run the other way."""
-        return BorderEdge(self.edge, self.shape, not self.is_forward)
+        return replace(self, is_forward=not self.is_forward)
 
 
 Border = tuple[BorderEdge, ...]
@@ -65,7 +70,7 @@ def straight_edge(start: TopoDS_Vertex, end: TopoDS_Vertex, ends: Floats) -> Bor
     length = float(np.linalg.norm(way))
     line = Geom_Line(gp_Pnt(*ends[0].tolist()), gp_Dir(*way.tolist()))
     shape = PoleCurve(1, np.array([0.0, length]), np.array([2, 2]), ends, None)
-    return BorderEdge(_edge(line, start, end, 0.0, length), shape, True)
+    return BorderEdge(_edge(line, start, end, 0.0, length), shape, start, end)
 
 
 def curved_edge(
@@ -77,7 +82,7 @@ def curved_edge(
     poles, weights, knots, multiplicities = curve_arrays(curve)
     shape = PoleCurve(curve.Degree(), knots, multiplicities, poles, weights)
     first, last = curve.FirstParameter(), curve.LastParameter()
-    return BorderEdge(_edge(curve, start, end, first, last), shape, True)
+    return BorderEdge(_edge(curve, start, end, first, last), shape, start, end)
 
 
 def sub_curve(curve: Geom_BSplineCurve, first: float, last: float) -> Geom_BSplineCurve:
@@ -105,5 +110,5 @@ def loosen(border: Border, tolerance: float) -> None:
     builder = BRep_Builder()
     for item in border:
         builder.UpdateEdge(item.edge, tolerance)
-        for vertex in vertices_of(item.edge):
+        for vertex in (item.start, item.end):
             builder.UpdateVertex(vertex, tolerance)

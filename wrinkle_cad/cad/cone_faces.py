@@ -134,4 +134,4 @@ def _degenerated_edge(
     builder.Range(edge, first, last)
     builder.Degenerated(edge, True)
     nothing = PoleCurve(1, np.array([first, last]), np.array([2, 2]), np.empty((0, 3)), None)
-    return BorderEdge(edge, nothing, False)
+    return BorderEdge(edge, nothing, vertex, vertex, is_forward=False)

@@ -29,6 +29,7 @@ from .fans import Fan, fans_of, thin_triangles
 from .kernel import check_valid, kernel_step
 from .plane_faces import is_plane_sector, plane_face
 from .skeleton import Skeleton, thin_limit
+from .slivers import cut_at_knots
 
 Floats = NDArray[np.float64]
 Bools = NDArray[np.bool_]
@@ -104,15 +105,16 @@ def _corners(rail: Directrix, samples: Samples) -> Bools:
 def _faces_of(fan: Fan, skeleton: Skeleton) -> list[TopoDS_Shape]:
     bank, early, late = skeleton.bank(fan), skeleton.bridge(fan.early), skeleton.bridge(fan.late)
     corner = skeleton.corner(1 - fan.side, fan.apex)
-    apex = skeleton.points[corner]
+    apex, vertex = skeleton.points[corner], skeleton.vertex(corner)
     # Towards the apex is from P to Q for a bank on P, and from Q to P for a bank on Q.
     to_apex, from_apex = (late, flipped(early)) if fan.side == P_STEP else (flipped(late), early)
     (edge,) = bank
-    if is_plane_sector(edge.shape.poles, apex):
+    if is_plane_sector(edge.shape, apex):
         loop: Border = (*bank, *to_apex, *from_apex)
         return [plane_face(loop if fan.side == P_STEP else flipped(loop))]
-    face = cone_face(edge, to_apex, from_apex, apex, skeleton.vertex(corner))
-    return [face if fan.side == P_STEP else face.Reversed()]
+    sectors = cut_at_knots((edge, to_apex, from_apex), apex, vertex, skeleton.limit)
+    faces = [cone_face(*sector, apex, vertex) for sector in sectors]
+    return [face if fan.side == P_STEP else face.Reversed() for face in faces]
 
 
 def _shell_of(faces: list[TopoDS_Shape]) -> TopoDS_Shell:

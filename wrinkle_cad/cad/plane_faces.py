@@ -13,6 +13,7 @@ from OCP.TopoDS import TopoDS_Face, TopoDS_Wire
 from wrinkle_cad import settings
 
 from .borders import Border, border_poles
+from .evaluation import PoleCurve
 
 Floats = NDArray[np.float64]
 
@@ -47,26 +48,33 @@ def loop_normal(poles: Floats) -> Floats:
     return np.asarray(np.cross(from_first[:-1], from_first[1:]).sum(axis=0) / 2.0)
 
 
-def is_plane_sector(poles: Floats, apex: Floats) -> bool:
+def is_plane_sector(curve: PoleCurve, apex: Floats) -> bool:
     """Tells whether a curve and an apex bound a simple region of a plane.
 
     Args:
-        poles: (k, 3) mm; poles of the curve.
+        curve: the curve; if it turns back somewhere, but by less than a thirtieth of a span,
+            that is not seen.
         apex: (3,) mm; may be the curve's start or end.
 
     Returns:
-        Whether all of them lie in one plane and the polygon of the poles turns one way about the
-        apex. A B-spline crosses no line more often than its polygon does, so the curve then
-        does not turn back either.
+        Whether all poles and the apex lie in one plane and the curve turns one way about the apex.
     """
-    spokes = poles - apex
-    spokes = spokes[0 if spokes[0].any() else 1 : None if spokes[-1].any() else -1]
+    spokes = _spokes(curve.poles, apex)
     turns = np.cross(spokes[:-1], spokes[1:])
     normal = turns.sum(axis=0)
     size = float(np.linalg.norm(normal))
-    if size == 0.0:
+    if size == 0.0 or np.abs(spokes @ normal).max() > settings.PLANE_GAP * size:
         return False
-    normal /= size
-    if np.abs(spokes @ normal).max() > settings.PLANE_GAP:
-        return False
-    return bool((turns @ normal > 0.0).all())
+    if (turns @ normal > 0.0).all():
+        # A B-spline crosses no line more often than the polygon of its poles does.
+        return True
+    share = np.linspace(0.0, 1.0, 33)[:-1, None]
+    along = ((1.0 - share) * curve.knots[:-1] + share * curve.knots[1:]).T.ravel()
+    spokes = _spokes(curve.point_at(np.append(along, curve.knots[-1])), apex)
+    return bool((np.cross(spokes[:-1], spokes[1:]) @ normal > 0.0).all())
+
+
+def _spokes(points: Floats, apex: Floats) -> Floats:
+    """Returns (k, 3) mm from an apex to points, without an end point that is the apex."""
+    spokes = points - apex
+    return spokes[0 if spokes[0].any() else 1 : None if spokes[-1].any() else -1]
