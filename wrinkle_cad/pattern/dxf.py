@@ -1,37 +1,39 @@
-"""Pattern pieces as DXF: one entry for every profile, and the plain drawing for cutters.
+"""Pattern pieces as DXF: one entry for every profile and version, whole files, fixed bytes.
 
-Cutters get one closed polyline per contour (LWPOLYLINE, or POLYLINE in R12), lines for rulings,
-marks and notches, points for holes and single-line texts. The aama and astm profiles are written
-by ``aama``. Millimetres; R12 cannot say so in its header, so a text on every piece does.
+Drawings for cutters come from ``cutter``, blocks for pattern CAD from ``aama``. R12 is written in
+its plainest form: by ezdxf's exporter for R12, and for blocks by its exporter for Gerber, without
+any block that is not a piece.
 """
 
 from __future__ import annotations
 
 import io
-from collections.abc import Sequence
+import logging
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass
 from datetime import datetime
 from pathlib import Path
 from typing import Final, Literal, get_args
 
-import ezdxf
-import numpy as np
-from ezdxf.document import Drawing as DxfDocument
+from ezdxf.addons import gerber_D6673, r12export
 
 from wrinkle_cad import settings
 from wrinkle_cad.atomic import write_atomically
 from wrinkle_cad.errors import ExportError, InputError
 from wrinkle_cad.findings import Finding
 
-from .drawing import Drawing, Stroke, draw
-from .layers import LINE_TYPES, LayerStyle, Profile, Role, profile_from
+from .aama import block_document, scale_piece
+from .contours import Curves
+from .cutter import cutter_document
+from .layers import Profile, profile_from
 from .nesting import laid_out
-from .piece import Floats, PatternPiece
-from .plain_text import ascii_text, text_changed
+from .piece import PatternPiece
 from .stamping import EPOCH, stamped
 
 DxfVersion = Literal["R12", "R2000", "R2010"]
 VERSIONS: Final[tuple[str, ...]] = get_args(DxfVersion)
+CURVES: Final[tuple[str, ...]] = get_args(Curves)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -40,7 +42,7 @@ class DxfFile:
 
     Attributes:
         content: its bytes, 7-bit ASCII, the same for the same pieces on every machine.
-        findings: texts that had to be changed.
+        findings: texts that had to be changed, and what its readers may not like.
     """
 
     content: bytes
@@ -51,51 +53,74 @@ def dxf_file(
     pieces: Sequence[PatternPiece],
     *,
     profile: str | Path | Profile = settings.DXF_PROFILE,
-    version: DxfVersion = settings.DXF_VERSION,
-    timestamp: datetime | None = None,
+    version: DxfVersion | None = None,
+    curves: Curves = "lines",
     test_square: bool = False,
+    timestamp: datetime | None = None,
 ) -> DxfFile:
     """Returns a DXF file of all pieces, laid out side by side at one scale.
 
     Args:
         pieces: at least one.
         profile: a shipped profile, the user's own ``.toml`` file or a profile itself.
-        version: of DXF. Profiles of blocks (aama, astm) are always the plainest R12.
-        timestamp: what the file says about when it was made; ``EPOCH`` if None.
+        version: of DXF; None is R2000 for drawings and R12 for blocks (aama, astm).
+        curves: contours as ``lines``, with ``arcs`` or as ``splines``; blocks have lines only.
         test_square: add a square of 100 mm to check the scale on the machine.
+        timestamp: what the file says about when it was made; ``EPOCH`` if None.
 
     Raises:
-        InputError: no pieces, or an unknown profile or version.
+        InputError: no pieces, an unknown option, or options that exclude each other.
     """
-    if not pieces:
-        raise InputError("DXF - no pieces - at least one - make a pattern first")
-    if version not in VERSIONS:
-        raise InputError(f"DXF version {version!r} - one of {', '.join(VERSIONS)} - choose one")
     chosen = profile if isinstance(profile, Profile) else profile_from(profile)
-    document = _document(chosen, version)
-    findings: list[Finding] = []
-    for piece in laid_out(pieces):
-        findings += _write_piece(document, draw(piece), piece, chosen)
-    if test_square:
-        _write_test_square(document, laid_out(pieces), chosen)
-    _remove_unused_layers(document)
+    _check_options(pieces, chosen, version, curves)
+    moment = timestamp or EPOCH
+    findings: tuple[Finding, ...]
+    if chosen.is_blocks:
+        release = version or "R12"
+        everything = [*pieces, scale_piece(pieces[0])] if test_square else pieces
+        with _without_unit_warning():
+            document, findings = block_document(
+                laid_out(everything), chosen, release=release, timestamp=moment
+            )
+        if release != "R12":
+            findings = (*findings, _layout_blocks_finding(chosen.name, release))
+    else:
+        release = version or settings.DXF_VERSION
+        document, findings = cutter_document(
+            laid_out(pieces),
+            chosen,
+            release="R2000" if release == "R12" else release,
+            curves=curves,
+            test_square=test_square,
+        )
     stream = io.StringIO()
-    document.write(stream)
-    text = stamped(stream.getvalue(), timestamp or EPOCH)
-    return DxfFile(text.encode("ascii"), tuple(findings))
+    with _without_unit_warning():
+        if release != "R12":
+            document.write(stream)
+        elif chosen.is_blocks:
+            gerber_D6673.export_stream(document, stream)
+        else:
+            r12export.write(document, stream)
+    return DxfFile(stamped(stream.getvalue(), moment).encode("ascii"), findings)
 
 
 def dxf_bytes(
     pieces: Sequence[PatternPiece],
     *,
     profile: str | Path | Profile = settings.DXF_PROFILE,
-    version: DxfVersion = settings.DXF_VERSION,
-    timestamp: datetime | None = None,
+    version: DxfVersion | None = None,
+    curves: Curves = "lines",
     test_square: bool = False,
+    timestamp: datetime | None = None,
 ) -> bytes:
     """Returns only the bytes of ``dxf_file``, with the same arguments and errors."""
     return dxf_file(
-        pieces, profile=profile, version=version, timestamp=timestamp, test_square=test_square
+        pieces,
+        profile=profile,
+        version=version,
+        curves=curves,
+        test_square=test_square,
+        timestamp=timestamp,
     ).content
 
 
@@ -104,11 +129,12 @@ def write_dxf(
     pieces: Sequence[PatternPiece],
     *,
     profile: str | Path | Profile = settings.DXF_PROFILE,
-    version: DxfVersion = settings.DXF_VERSION,
-    timestamp: datetime | None = None,
+    version: DxfVersion | None = None,
+    curves: Curves = "lines",
     test_square: bool = False,
+    timestamp: datetime | None = None,
 ) -> tuple[Finding, ...]:
-    """Writes a DXF file, whole or not at all, and returns what was changed on the way.
+    """Writes a DXF file, whole or not at all, and returns the findings of ``dxf_file``.
 
     The other arguments are those of ``dxf_file``.
 
@@ -117,7 +143,12 @@ def write_dxf(
         ExportError: the file cannot be written.
     """
     made = dxf_file(
-        pieces, profile=profile, version=version, timestamp=timestamp, test_square=test_square
+        pieces,
+        profile=profile,
+        version=version,
+        curves=curves,
+        test_square=test_square,
+        timestamp=timestamp,
     )
     try:
         write_atomically(path, made.content)
@@ -126,93 +157,43 @@ def write_dxf(
     return made.findings
 
 
-def _document(profile: Profile, version: str) -> DxfDocument:
-    # R12 has no unit in its header, and ezdxf warns when one is set.
-    document = ezdxf.new(version, setup=False, units=0 if version == "R12" else 4)
-    document.encoding = "cp1252"
-    if version != "R12":
-        document.header["$MEASUREMENT"] = 1
-    for name, (description, pattern) in LINE_TYPES.items():
-        used = any(style.line_type == name for style in profile.styles.values())
-        if used and name not in document.linetypes:
-            document.linetypes.add(name, pattern=list(pattern), description=description)
-    first: dict[str, LayerStyle] = {}
-    for style in profile.styles.values():
-        first.setdefault(style.layer, style)
-    for layer, style in first.items():
-        if layer not in document.layers:
-            document.layers.add(layer, color=style.colour)
-    return document
-
-
-def _remove_unused_layers(document: DxfDocument) -> None:
-    used = {entity.dxf.layer.lower() for entity in document.modelspace()}
-    for name in [layer.dxf.name for layer in document.layers]:
-        if name.lower() not in used | {"0", "defpoints"}:
-            document.layers.remove(name)
-
-
-def _write_piece(
-    document: DxfDocument, drawing: Drawing, piece: PatternPiece, profile: Profile
-) -> list[Finding]:
-    space = document.modelspace()
-    findings: list[Finding] = []
-    for stroke in drawing.strokes:
-        if stroke.role in profile.styles:
-            _write_stroke(document, stroke, profile.styles[stroke.role])
-    for spot in drawing.spots:
-        if spot.role in profile.styles:
-            attributes = _attributes(profile.styles[spot.role])
-            space.add_point(_rounded(spot.position), dxfattribs=attributes)
-    for label in drawing.labels:
-        if label.role in profile.styles:
-            text = ascii_text(label.text)
-            findings += text_changed(f"text on {ascii_text(piece.name)}", label.text, text)
-            attributes = _attributes(profile.styles[label.role])
-            space.add_text(text, height=label.height, dxfattribs=attributes).set_placement(
-                _rounded(label.position)
-            )
-    return findings
-
-
-def _write_stroke(document: DxfDocument, stroke: Stroke, style: LayerStyle) -> None:
-    space = document.modelspace()
-    points = [_rounded(point) for point in stroke.points]
-    attributes = _attributes(style)
-    if len(points) == 2 and not stroke.is_closed:
-        space.add_line(points[0], points[1], dxfattribs=attributes)
-    elif document.dxfversion == ezdxf.const.DXF12:
-        space.add_polyline2d(points, close=stroke.is_closed, dxfattribs=attributes)
-    else:
-        space.add_lwpolyline(points, close=stroke.is_closed, dxfattribs=attributes)
-
-
-def _write_test_square(
-    document: DxfDocument, pieces: Sequence[PatternPiece], profile: Profile
+def _check_options(
+    pieces: Sequence[PatternPiece], profile: Profile, version: str | None, curves: str
 ) -> None:
-    role: Role = "test_square"
-    if role not in profile.styles:
-        return
-    side = settings.TEST_SQUARE
-    top = max(float(piece.cut_line[:, 1].max()) for piece in pieces) + settings.PIECE_GAP
-    corners = np.array(((0.0, top), (side, top), (side, top + side), (0.0, top + side)))
-    _write_stroke(document, Stroke(role, corners, is_closed=True), profile.styles[role])
-    space = document.modelspace()
-    space.add_text(
-        f"TEST SQUARE {side:g} X {side:g} MM",
-        height=settings.TEXT_HEIGHT,
-        dxfattribs=_attributes(profile.styles.get("text", profile.styles[role])),
-    ).set_placement((5.0, top + 5.0))
+    if not pieces:
+        raise InputError("DXF - no pieces - at least one - make a pattern first")
+    if version is not None and version not in VERSIONS:
+        raise InputError(f"DXF version {version!r} - one of {', '.join(VERSIONS)} - choose one")
+    if curves not in CURVES:
+        raise InputError(f"DXF curves {curves!r} - one of {', '.join(CURVES)} - choose one")
+    if profile.is_blocks and curves != "lines":
+        raise InputError(
+            f"DXF curves {curves} - profile {profile.name} - its contours are polylines - "
+            "choose lines"
+        )
+    if version == "R12" and curves == "splines":
+        raise InputError("DXF curves splines - version R12 has none - R2000 or later - choose it")
 
 
-def _attributes(style: LayerStyle) -> dict[str, object]:
-    attributes: dict[str, object] = {"layer": style.layer, "color": style.colour}
-    if style.line_type != "CONTINUOUS":
-        attributes["linetype"] = style.line_type
-    return attributes
+def _layout_blocks_finding(profile: str, release: str) -> Finding:
+    return Finding(
+        "layout-blocks",
+        "warning",
+        f"DXF {profile} as {release} - the release needs layout blocks that are no pieces - "
+        "Gerber reads blocks of pieces only - use R12 for it",
+    )
 
 
-def _rounded(point: Floats) -> tuple[float, float]:
-    """Returns x and y as the file has them; adding 0.0 turns -0.0 into 0.0."""
-    first, second = np.round(point, settings.DXF_DECIMALS) + 0.0
-    return float(first), float(second)
+@contextmanager
+def _without_unit_warning() -> Iterator[None]:
+    """Keeps ezdxf from telling the user's screen that R12 has no unit: every piece states it."""
+
+    def tells_more(record: logging.LogRecord) -> bool:
+        return "$INSUNITS" not in record.getMessage()
+
+    logger = logging.getLogger("ezdxf")
+    logger.addFilter(tells_more)
+    try:
+        yield
+    finally:
+        logger.removeFilter(tells_more)
