@@ -304,3 +304,7 @@ BAND_FOLD_LIMIT: Final = 2.6
 
 EDGE_TOLERANCE_LIMIT: Final = 1e-3
 """mm; what the largest edge tolerance of a stitched shell may be where the upper's own is less."""
+
+BAND_BENDING_PRICE: Final = 5.0
+"""A band that bends more than so many times the least is taken with the least bending instead:
+its extra valid bridges were bought with folds."""

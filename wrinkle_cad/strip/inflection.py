@@ -7,7 +7,11 @@ from itertools import combinations
 import numpy as np
 import numpy.typing as npt
 
-from wrinkle_cad.settings import INFLECTION_SAGITTAS, INFLECTION_SAMPLES
+from wrinkle_cad.settings import (
+    DOUBLE_INFLECTION_SAGITTAS,
+    INFLECTION_SAGITTAS,
+    INFLECTION_SAMPLES,
+)
 
 from .path import Path
 
@@ -45,32 +49,44 @@ def inflection_bridges(path: Path, sagitta: float) -> Bools:
 
     Such a bridge has a valid one bent up before it and a valid one bent down behind it (or the
     reverse), both at most two samples away, counted on the rail where that is less; and its
-    neighbours share a tangent plane to within what the sampling can tell: the typical sagitta.
+    neighbours share a tangent plane to within what the sampling can tell. Where two changes of
+    bending fall between samples it is a single bridge, bent against its valid neighbours.
 
     Args:
         path: the bridges, in order.
-        sagitta: mm; typical sagitta of the rails.
+        sagitta: mm; typical sagitta of the rail that is sampled more coarsely.
 
     Returns:
         (k,) bool; a subset of the invalid interior bridges.
     """
-    bridges, valid, fold = path.bridges, path.valid, path.fold
+    invalid = ~path.valid
+    invalid[[0, -1]] = False
+    misfit = np.zeros(invalid.size)
+    misfit[invalid] = plane_misfit(path.view[:, invalid])
+    fold = np.concatenate(([0.0], path.fold, [0.0]))
+    is_change = _changes(path.bridges, path.valid, fold) & (misfit <= INFLECTION_SAGITTAS * sagitta)
+    # The first and the last bridge have no fold, so they contradict no interior one.
+    opposed = (fold[:-1] * fold[1:] < 0.0) & ~(invalid[:-1] & invalid[1:])
+    opposed[[0, -1]] = True
+    against = np.append(False, opposed) & np.append(opposed, False)
+    is_double = against & (misfit <= DOUBLE_INFLECTION_SAGITTAS * sagitta)
+    result: Bools = invalid & (is_change | is_double)
+    return result
+
+
+def _changes(bridges: npt.NDArray[np.int64], valid: Bools, fold: Floats) -> Bools:
+    """Bridges with valid ones bent opposite ways before and behind them, close enough."""
     reach = INFLECTION_SAMPLES
     first = np.minimum(*(np.searchsorted(side, side - reach, "left") for side in bridges.T))
     stop = np.maximum(*(np.searchsorted(side, side + reach, "right") for side in bridges.T))
     here = np.arange(bridges.shape[0])
-    before, after = [], []
+    before, behind = [], []
     for sign in (1.0, -1.0):
-        bent = np.zeros(bridges.shape[0] + 1, dtype=np.int64)
-        bent[2:-1] = valid[1:-1] & (sign * fold > 0.0)
-        count = np.cumsum(bent)
+        count = np.concatenate(([0], np.cumsum(valid & (sign * fold > 0.0))))
         before.append(count[here] > count[first])
-        after.append(count[stop] > count[here + 1])
-    changes = (before[0] & after[1]) | (before[1] & after[0])
-    candidate: Bools = changes & ~valid
-    candidate[[0, -1]] = False
-    candidate[candidate] = plane_misfit(path.view[:, candidate]) <= INFLECTION_SAGITTAS * sagitta
-    return candidate
+        behind.append(count[stop] > count[here + 1])
+    result: Bools = (before[0] & behind[1]) | (before[1] & behind[0])
+    return result
 
 
 def fan_aware_twist(path: Path) -> Floats:

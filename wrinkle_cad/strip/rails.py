@@ -7,6 +7,7 @@ import numpy.typing as npt
 
 from wrinkle_cad.errors import InputError
 from wrinkle_cad.settings import (
+    COINCIDENT_SAGITTAS,
     LARGEST_COORDINATE,
     PLANARITY_FLOOR_PER_COORDINATE,
     PLANARITY_PER_TOLERANCE,
@@ -59,9 +60,13 @@ def _checked_rail(points: npt.ArrayLike, name: str) -> Floats:
     return rail
 
 
-def round_off(p: Floats, q: Floats) -> float:
+def round_off(*rails: Floats) -> float:
     """Returns the distance in mm below which coordinates of these rails say nothing."""
-    return ROUND_OFF_PER_COORDINATE * float(max(np.abs(p).max(), np.abs(q).max()))
+    return ROUND_OFF_PER_COORDINATE * _largest(*rails)
+
+
+def _largest(*rails: Floats) -> float:
+    return max(float(np.abs(rail).max()) for rail in rails)
 
 
 def sagittas(rail: Floats) -> Floats:
@@ -84,15 +89,23 @@ def sagittas(rail: Floats) -> Floats:
     return result
 
 
-def typical_sagitta(p: Floats, q: Floats) -> float:
-    """Returns the median sagitta in mm of the rails' bent triples; 0 when both are straight.
+def typical_sagitta(*rails: Floats) -> float:
+    """Returns the median sagitta in mm of the bent triples of all rails; 0 when all are straight.
 
     Some four times the chord tolerance for rails sampled to one. Straight stretches are left out:
     they are sampled as sparsely as one likes and tell nothing.
+
+    Args:
+        rails: (k, 3) float64 each, mm.
     """
-    both = np.concatenate((sagittas(p), sagittas(q)))
-    bent = both[both > round_off(p, q)]
+    sagitta = np.concatenate([sagittas(rail) for rail in rails])
+    bent = sagitta[sagitta > round_off(*rails)]
     return float(np.median(bent)) if bent.size else 0.0
+
+
+def coarser_sagitta(p: Floats, q: Floats) -> float:
+    """Returns the typical sagitta in mm of the rail that is sampled more coarsely."""
+    return max(typical_sagitta(p), typical_sagitta(q))
 
 
 def default_planarity(p: Floats, q: Floats) -> float:
@@ -101,7 +114,7 @@ def default_planarity(p: Floats, q: Floats) -> float:
     A fixed share of the typical sagitta, never below what round-off of the coordinates does to
     neighbours whose spacings differ some hundredfold.
     """
-    floor = PLANARITY_FLOOR_PER_COORDINATE * float(max(np.abs(p).max(), np.abs(q).max()))
+    floor = PLANARITY_FLOOR_PER_COORDINATE * _largest(p, q)
     return max(PLANARITY_PER_TOLERANCE * typical_sagitta(p, q), floor)
 
 
@@ -125,19 +138,20 @@ def check_rails_apart(p: Floats, q: Floats, planarity: float) -> None:
     """Refuses rails that coincide: everywhere, or over more than one bank edge.
 
     A rail may touch the other in single samples, and share one bank edge with it, as where both run
-    into the same end. Everywhere means: no sample is further from the other rail than its
-    sampling can tell.
+    into the same end. Everywhere means: no sample is further from the other rail than two samplings
+    of one curve are from each other.
 
     Raises:
         InputError: the strip has no width over a stretch; the message says where.
     """
     p_gap, q_gap = _distances(p, q), _distances(q, p)
-    widest = max(float(p_gap.max()), float(q_gap.max()))
-    limit = max(planarity, typical_sagitta(p, q))
-    if widest <= limit:
+    p_limit = max(planarity, COINCIDENT_SAGITTAS * typical_sagitta(q))
+    q_limit = max(planarity, COINCIDENT_SAGITTAS * typical_sagitta(p))
+    if p_gap.max() <= p_limit and q_gap.max() <= q_limit:
         raise InputError(
-            f"strip - P and Q coincide: nowhere more than {widest:.3g} mm apart"
-            f" - their sampling tells {limit:.3g} mm - choose two different curves"
+            f"strip - P and Q coincide: nowhere more than {max(p_gap.max(), q_gap.max()):.3g} mm"
+            f" apart - their sampling tells {max(p_limit, q_limit):.3g} mm"
+            " - choose two different curves"
         )
     for name, gap, rail in (("P", p_gap, p), ("Q", q_gap, q)):
         first, last = _longest_run(gap <= planarity)

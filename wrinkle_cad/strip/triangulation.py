@@ -17,7 +17,7 @@ from .global_search import Weights, best_steps, weights_of
 from .inflection import fan_aware_twist, inflection_bridges
 from .local_search import local_steps
 from .path import walk
-from .rails import check_rails_apart, checked_planarity, checked_rails, round_off, typical_sagitta
+from .rails import check_rails_apart, checked_planarity, checked_rails, coarser_sagitta, round_off
 
 Floats = npt.NDArray[np.float64]
 Bools = npt.NDArray[np.bool_]
@@ -206,7 +206,7 @@ def measured(
         "triangles": _triangles(path.bridges, steps, p.shape[0]),
         "steps": steps,
         "valid": path.valid,
-        "inflection": inflection_bridges(path, typical_sagitta(p, q)),
+        "inflection": inflection_bridges(path, coarser_sagitta(p, q)),
         "fold": path.fold,
         "twist": fan_aware_twist(path),
         "bending_at": path.bending_at,
