@@ -150,7 +150,7 @@ DXF_DECIMALS: Final = 6
 SPAN_SLACK: Final = 1e-9
 """A bridge whose end lies this share of the rail beyond a pattern piece still belongs to it."""
 
-MATRIX_OVERVIEW: Final = 1024
+MATRIX_OVERVIEW: Final = 640
 """Pixels on the longer side of the page's overview of a validity matrix, at most."""
 
 MATRIX_TILE: Final = 500

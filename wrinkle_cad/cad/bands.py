@@ -1,0 +1,180 @@
+"""Bands: the strips that close the gap between an opening's boundary and the profiles.
+
+A band is found by the same search as the wrinkle itself, and shares the wrinkle's samples along the
+profile. It has zero width at both ends of the opening; anywhere else that would leave a slit.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+from OCP.BRepBuilderAPI import BRepBuilderAPI_MakeEdge
+from OCP.gp import gp_Pnt
+from OCP.TopoDS import TopoDS_Edge, TopoDS_Shell
+
+from .. import settings
+from ..errors import InputError
+from ..strip.sampling import Samples
+from ..strip.triangulation import Triangulation, triangulate
+from .border import edge_ends
+from .directrix import Directrix, make_directrix, sample_directrix
+from .faces import build_shell
+
+Floats = NDArray[np.float64]
+
+
+class StripLike(Protocol):
+    """What a strip must know to be stitched in; ``WrinkleStrip`` does."""
+
+    @property
+    def name(self) -> str:
+        """What messages call it."""
+
+    @property
+    def p(self) -> Directrix:
+        """The profile along the opening's P side."""
+
+    @property
+    def q(self) -> Directrix:
+        """The profile along the opening's Q side."""
+
+    @property
+    def p_samples(self) -> Samples:
+        """The samples of P."""
+
+    @property
+    def q_samples(self) -> Samples:
+        """The samples of Q."""
+
+    @property
+    def triangulation(self) -> Triangulation:
+        """The strip itself."""
+
+    def topods_shell(self) -> TopoDS_Shell:
+        """Returns its surface."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Band:
+    """The strip between one side of an opening and one profile."""
+
+    name: str
+    """``P`` or ``Q``: the rail that it closes up to."""
+    side: Directrix
+    """The opening's boundary."""
+    triangulation: Triangulation
+    """The band, as triangles."""
+    shell: TopoDS_Shell
+    """The band, as faces."""
+    width: float
+    """mm; the largest distance between boundary and profile."""
+
+
+def side_curve(edges: Sequence[TopoDS_Edge], name: str) -> Directrix:
+    """Returns the edges of one side as one directrix; gaps of the upper are crossed straight."""
+    run: list[TopoDS_Edge] = []
+    for edge in edges:
+        if run:
+            before, after = edge_ends(run[-1])[1], edge_ends(edge)[0]
+            if float(np.linalg.norm(after - before)) > settings.GAP_CROSSED:
+                run.append(_straight(before, after))
+        run.append(edge)
+    return make_directrix(run, name=name)
+
+
+def _straight(start: Floats, end: Floats) -> TopoDS_Edge:
+    points = (gp_Pnt(*start.tolist()), gp_Pnt(*end.tolist()))
+    return BRepBuilderAPI_MakeEdge(*points).Edge()
+
+
+def make_band(
+    edges: Sequence[TopoDS_Edge],
+    profile: Directrix,
+    samples: Samples,
+    name: str,
+    *,
+    tolerance: float,
+    is_first: bool,
+) -> Band | None:
+    """Returns the band between one side of an opening and a profile, None if they coincide.
+
+    Args:
+        edges: the side, in order.
+        profile: the wrinkle's rail.
+        samples: of the profile.
+        name: ``P`` or ``Q``.
+        tolerance: mm; chords of the side.
+        is_first: whether the side is the band's P rail (it is along P, so that all strips of one
+            opening face the same way).
+
+    Raises:
+        InputError: the band has no width somewhere between its ends, or folds over.
+    """
+    side = side_curve(edges, f"opening along {name}")
+    gaps = _distances(samples.points, side)
+    width = float(gaps.max())
+    if width <= settings.COINCIDENT:
+        return None
+    _check_open(gaps, samples, name)
+    side_samples = sample_directrix(side, tolerance)
+    rails = (side, profile) if is_first else (profile, side)
+    sampled = (side_samples, samples) if is_first else (samples, side_samples)
+    triangulation = _triangulated(*sampled, settings.planarity_from(tolerance))
+    _check_folds(triangulation, name, width)
+    shell = build_shell(triangulation, *rails, *sampled, settings.SURFACE)
+    return Band(name, side, triangulation, shell, width)
+
+
+def _triangulated(p: Samples, q: Samples, planarity: float) -> Triangulation:
+    """Returns the most developable band that does not buy its developability with sharp folds."""
+    found, least = (
+        triangulate(p.points, q.points, criteria=criteria, planarity=planarity)
+        for criteria in (settings.CRITERIA, ("bending",))
+    )
+    dear = found.bending > settings.BAND_BENDING_PRICE * least.bending
+    return least if dear else found
+
+
+def _distances(points: Floats, side: Directrix) -> Floats:
+    """Returns (k,) mm: how far points are from a curve, exact to far below the band's width."""
+    parameters = np.union1d(np.linspace(*side.interval, 2049), side.breaks)
+    line = side.point_at(parameters)
+    chord = np.diff(line, axis=0)
+    square = np.maximum((chord**2).sum(axis=1), np.finfo(np.float64).tiny)
+    gaps = np.empty(len(points))
+    for i, point in enumerate(points):
+        share = np.clip(((point - line[:-1]) * chord).sum(axis=1) / square, 0.0, 1.0)
+        foot = np.interp(
+            np.arange(len(share)) + share, np.arange(len(parameters)), parameters
+        )
+        nearest = int(np.linalg.norm(line[:-1] + share[:, None] * chord - point, axis=1).argmin())
+        at = side.point_at(foot[nearest : nearest + 1])[0]
+        gaps[i] = float(np.linalg.norm(at - point))
+    return gaps
+
+
+def _check_open(gaps: Floats, samples: Samples, name: str) -> None:
+    inner = gaps[1:-1]
+    if not len(inner) or float(inner.min()) > settings.COINCIDENT:
+        return
+    at = 1 + int(inner.argmin())
+    raise InputError(
+        f"profile {name} - it touches the opening's boundary at {samples.parameters[at]:.4g} mm"
+        f" along it ({gaps[at]:.1e} mm) and leaves it by {gaps.max():.3g} mm elsewhere - a band has"
+        " no width at its two ends only - carve with a margin, or leave the profile on the boundary"
+    )
+
+
+def _check_folds(triangulation: Triangulation, name: str, width: float) -> None:
+    fold = np.abs(triangulation.fold)
+    worst = float(fold.max(initial=0.0))
+    if worst > settings.BAND_FOLD_LIMIT:
+        raise InputError(
+            f"band along {name} - up to {width:.3g} mm wide, it folds over by"
+            f" {np.degrees(worst):.0f} degrees - {np.degrees(settings.BAND_FOLD_LIMIT):.0f} is the"
+            " limit - lower the waves, take fewer of them or a wider margin"
+        )
