@@ -134,12 +134,11 @@ def _without_short_segments(points: Floats, tolerance: float) -> Floats:
         lengths = np.linalg.norm(np.roll(points, -1, axis=0) - points, axis=1)
         turn = np.abs(closed_turns(points))
         nearest = np.minimum(lengths, np.roll(lengths, 1))
-        # A vertex may go when it is closer than the tolerance to a neighbour that turns more,
-        # or when it lies on the line of its neighbours to within what the file can say.
+        # A vertex may go when it stands closer than the tolerance to a neighbour, the one that
+        # turns less first, or on the line of its neighbours to within what the file can say.
         sagitta = turn * nearest
         flat = (sagitta < 10.0**-settings.DXF_DECIMALS) & (turn < 1.0)
-        crowded = (lengths < tolerance) | (np.roll(lengths, 1) < tolerance)
-        may_go = flat | (crowded & (turn < settings.PATTERN_CORNER))
+        may_go = flat | (nearest < tolerance)
         order = np.empty(len(points), dtype=np.int64)
         order[np.argsort(np.where(may_go, sagitta, np.inf), kind="stable")] = np.arange(len(points))
         lowest = may_go & (order < np.roll(order, 1)) & (order < np.roll(order, -1))
