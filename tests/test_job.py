@@ -55,6 +55,8 @@ def test_criteria_from_a_job_file_become_a_tuple(tmp_path: Path) -> None:
         ({"name": "a\nb"}, "name"),
         ({"name": "é" * 101}, "name"),
         ({"colour": "red"}, "colour"),
+        ({"source_date_epoch": -1}, "source_date_epoch"),
+        ({"source_date_epoch": 10**15}, "source_date_epoch"),
     ],
 )
 def test_a_setting_out_of_its_range_is_named(keywords: dict[str, object], named: str) -> None:

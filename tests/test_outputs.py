@@ -53,9 +53,14 @@ def test_own_earlier_outputs_are_replaced(job: Job) -> None:
 
 def test_nothing_appears_when_writing_fails_and_the_old_outputs_stay(job: Job) -> None:
     write_all(job, "first")
-    with pytest.raises(RuntimeError), outputs_together(job, KINDS) as paths:
-        paths["step"].write_text("half")
-        raise RuntimeError
+
+    def write_half() -> None:
+        with outputs_together(job, KINDS) as paths:
+            paths["step"].write_text("half")
+            raise RuntimeError
+
+    with pytest.raises(RuntimeError):
+        write_half()
     assert (job.output_dir / "shoe.step").read_text() == "first"
     assert len(list(job.output_dir.iterdir())) == 3
 

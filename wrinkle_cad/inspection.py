@@ -6,6 +6,7 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from . import settings
 from .cad.loading import kernel_importable
 from .errors import InputError
 
@@ -94,7 +95,7 @@ def inspect_file(
 def _taken_by_index(chosen: Chosen) -> dict[int, str]:
     taken = {}
     for strip in chosen.strips:
-        prefix = f"{strip.name}:" if strip.name else ""
+        prefix = "" if strip.name == settings.STRIP_NAME else f"{strip.name}:"
         taken[strip.p.index] = f"{prefix}P"
         taken[strip.q.index] = f"{prefix}Q"
     if chosen.upper is not None:

@@ -26,6 +26,8 @@ _CHOICES: Final[dict[str, tuple[str, ...]]] = {
 _POSITIVE: Final = ("tolerance", "max_chord", "planarity", "waves", "max_fold_deg")
 _NOT_NEGATIVE: Final = ("height", "margin", "max_twist_deg", "max_invalid_percent")
 _NAME_LIMIT: Final = 200
+_EPOCH_LIMIT: Final = 253_402_300_800
+"""The year 10000, which no date format of the outputs can hold."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -85,6 +87,9 @@ class Job:
                 raise JobError(f"{field} - {value!r} - one of {', '.join(choices)}")
         for field in (*_POSITIVE, *_NOT_NEGATIVE):
             _check_number(field, getattr(self, field, None), may_be_zero=field in _NOT_NEGATIVE)
+        epoch = self.source_date_epoch
+        if epoch is not None and not 0 <= epoch < _EPOCH_LIMIT:
+            raise JobError(f"source_date_epoch - {epoch} s - 0 to {_EPOCH_LIMIT - 1} - correct it")
 
 
 def make_job(

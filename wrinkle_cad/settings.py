@@ -39,16 +39,13 @@ INFLECTION_SAMPLES: Final = 2
 INFLECTION_SAGITTAS: Final = 2.0
 """Neighbours share a tangent plane if no further from it than this many typical sagittas."""
 
-DOUBLE_INFLECTION_SAGITTAS: Final = 0.5
-"""The same where two changes of bending fall between samples: a strip that is only twisted
-alternates its folds when its neighbours lie further off than this."""
-
 COINCIDENT_SAGITTAS: Final = 0.3
 """Samples this many typical sagittas of the other rail away from it may be of the same curve: a
 chord tolerance is a quarter of a sagitta."""
 
-TWIST_PER_FOLD: Final = 0.5
-"""A gap is twist, not a crease, if more than this share of its largest fold is undone again."""
+TWIST_PER_DEFECT: Final = 0.5
+"""A gap is twist, not the end of a fan, if the surface turns by more than this share of the angle
+between the rails' tangents."""
 
 SHORTEST_SEGMENT_PER_LENGTH: Final = 1e-6
 """No sampled segment is shorter than this share of its curve's length."""

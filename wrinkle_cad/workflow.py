@@ -9,6 +9,7 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
+from . import settings
 from .cad.loading import kernel_importable
 from .errors import WrinkleError
 from .findings import Finding
@@ -104,7 +105,7 @@ def _make_strips(job: Job, chosen: Chosen) -> list[WrinkleStrip]:
         WrinkleStrip(
             given.p.shape,
             given.q.shape,
-            name=given.name or job.name,
+            name=job.name if given.name == settings.STRIP_NAME else given.name,
             tolerance=job.tolerance,
             surface=job.surface,
             criteria=job.criteria,

@@ -21,10 +21,8 @@ from .strip.unrolling import Unrolling, unroll, unroll_cones
 from .strip_report import StripReport, report_on
 
 if TYPE_CHECKING:
-    from OCP.TopoDS import TopoDS_Shell
-
     from .cut_pattern import Pattern
-    from .pattern.piece import PieceSettings
+    from .pattern.options import PieceSettings
 
 
 class WrinkleStrip:
@@ -59,7 +57,7 @@ class WrinkleStrip:
         q: object,
         *,
         tolerance: float = settings.TOLERANCE,
-        name: str = "strip",
+        name: str = settings.STRIP_NAME,
         color: tuple[float, float, float] = settings.STRIP_COLOR,
         surface: str = settings.SURFACE,
         criteria: Sequence[str] = settings.CRITERIA,
@@ -97,7 +95,7 @@ class WrinkleStrip:
             f"{t.invalid_count} of {t.interior_count} bridges not locally convex)"
         )
 
-    def topods_shell(self, surface: str | None = None) -> TopoDS_Shell:
+    def topods_shell(self, surface: str | None = None) -> Any:
         """The surface as the kernel's own shell, made once per kind and shared."""
         kind = self.surface if surface is None else surface
         check_surface(kind)
@@ -110,7 +108,7 @@ class WrinkleStrip:
         return self._shells[kind]
 
     @cached_property
-    def _shells(self) -> dict[str, TopoDS_Shell]:
+    def _shells(self) -> dict[str, Any]:
         return {}
 
     def shell(self, surface: str | None = None) -> Any:
