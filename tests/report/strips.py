@@ -145,7 +145,9 @@ def dome(side: int = 120, size: float = 200.0) -> MeshView:
     x, y = np.meshgrid(np.linspace(-40.0, 160.0, side), np.linspace(-60.0, 80.0, side))
     z = -6.0 + 14.0 * np.sin(math.pi * x / 120.0) - 0.002 * (y - 8.0) ** 2
     keep = np.arange(side * side).reshape(side, side)
-    a, b, c, d = (part.ravel() for part in (keep[:-1, :-1], keep[:-1, 1:], keep[1:, 1:], keep[1:, :-1]))
+    a, b, c, d = (
+        part.ravel() for part in (keep[:-1, :-1], keep[:-1, 1:], keep[1:, 1:], keep[1:, :-1])
+    )
     faces = np.vstack((np.column_stack((a, b, c)), np.column_stack((a, c, d))))
     points = np.column_stack((x.ravel(), y.ravel(), z.ravel()))
     return MeshView("upper", points.astype(np.float32), faces.astype(np.int32))

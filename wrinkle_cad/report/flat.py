@@ -10,12 +10,11 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from .. import settings
-from ..pattern.options import P_SIDE, Q_SIDE
-from ..pattern.piece import PatternPiece
-from ..strip.triangulation import Triangulation
-from ..strip.unrolling import Unrolling
-
+from wrinkle_cad import settings
+from wrinkle_cad.pattern.options import P_SIDE, Q_SIDE
+from wrinkle_cad.pattern.piece import PatternPiece
+from wrinkle_cad.strip.triangulation import Triangulation
+from wrinkle_cad.strip.unrolling import Unrolling
 
 
 def rail_line(piece: PatternPiece, side: int) -> NDArray[np.float64]:
@@ -37,7 +36,7 @@ def rail_line(piece: PatternPiece, side: int) -> NDArray[np.float64]:
     breaks = np.flatnonzero(np.diff(at) > 1)
     if len(breaks):
         at = np.roll(at, -(int(breaks[0]) + 1))
-    line = points[np.append(at, (at[-1] + 1) % len(points))]
+    line: NDArray[np.float64] = points[np.append(at, (at[-1] + 1) % len(points))]
     runs_backwards = (side == Q_SIDE) != piece.is_mirrored
     return line[::-1] if runs_backwards else line
 

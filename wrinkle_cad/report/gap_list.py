@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import Any, Final
 
-from ..strip.gaps import Gap, Kind
+from wrinkle_cad.strip.gaps import Gap, Kind
 
 ADVICE: Final[dict[Kind, str]] = {
     "inflection": "Nothing to change: the bend changes sides here. A finer tolerance narrows it.",

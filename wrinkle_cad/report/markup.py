@@ -57,13 +57,13 @@ def script(text: str, **attributes: str) -> Element:
     return element
 
 
-def to_script(value: Any) -> str:  # noqa: ANN401 - anything that JSON holds
+def to_script(value: Any) -> str:
     """JSON that may stand inside a script element: no ``<``, plain ASCII, no NaN."""
     text = json.dumps(finite(value), separators=(",", ":"), allow_nan=False)
     return text.replace("<", "\\u003c").replace(">", "\\u003e")
 
 
-def finite(value: Any) -> Any:  # noqa: ANN401 - anything that JSON holds
+def finite(value: Any) -> Any:
     """Returns the same value with null for every number that is not finite."""
     if isinstance(value, float) and not math.isfinite(value):
         return None

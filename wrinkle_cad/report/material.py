@@ -1,9 +1,9 @@
 """What a material allows: limits given one by one or as a TOML file.
 
-    name = "calf leather, 1.2 mm"
-    thickness_mm = 1.2
-    smallest_bend_radius_mm = 2.0
-    largest_twist_deg = 4.0
+name = "calf leather, 1.2 mm"
+thickness_mm = 1.2
+smallest_bend_radius_mm = 2.0
+largest_twist_deg = 4.0
 """
 
 from __future__ import annotations
@@ -17,8 +17,8 @@ from typing import Any, Final
 import numpy as np
 from numpy.typing import NDArray
 
-from ..errors import InputError
-from ..strip.triangulation import Triangulation
+from wrinkle_cad.errors import InputError
+from wrinkle_cad.strip.triangulation import Triangulation
 
 _KEYS: Final = ("name", "thickness_mm", "smallest_bend_radius_mm", "largest_twist_deg")
 
@@ -86,16 +86,17 @@ def _read_table(path: Path) -> dict[str, Any]:
     for key, value in table.items():
         if key not in _KEYS:
             raise InputError(
-                f"material {path.name} - unknown key {key!r} - known: {', '.join(_KEYS)} - remove it"
+                f"material {path.name} - unknown key {key!r} - known: {', '.join(_KEYS)} -"
+                " remove it"
             )
         if key != "name":
             _check_length(path, key, value)
     if not isinstance(table.get("name"), str) or not table["name"].strip():
-        raise InputError(f"material {path.name} - no name - a text - add name = \"...\"")
+        raise InputError(f'material {path.name} - no name - a text - add name = "..."')
     return table
 
 
-def _check_length(path: Path, key: str, value: Any) -> None:  # noqa: ANN401 - whatever TOML holds
+def _check_length(path: Path, key: str, value: Any) -> None:
     is_number = isinstance(value, int | float) and not isinstance(value, bool)
     if not is_number or not math.isfinite(value) or value < 0.0:
         raise InputError(

@@ -2,7 +2,7 @@
 
 Two levels. The *overview* has at most ``MATRIX_OVERVIEW`` pixels on a side: each pixel stands for a
 square block of bridges and its opacity for the share that is valid. A block that holds both kinds
-never looks like one that holds a single kind, so a run of one bridge is not lost. The *tiles* show
+never looks like one that holds a single kind, and a single valid bridge is seen. The *tiles* show
 single bridges and are decoded by the page when it is zoomed in; a tile of one kind is a number, not
 a picture. Where all tiles together would be too heavy, only those that the path crosses are kept.
 
@@ -18,10 +18,11 @@ from typing import Any, Final
 import numpy as np
 from numpy.typing import NDArray
 
-from .. import settings
+from wrinkle_cad import settings
 
 _VALID_COLOR: Final = (0x2F, 0x7F, 0xC4)
 _SHADES: Final = 16
+_MIXED_SHADES: Final = (6, 12)
 
 
 def matrix_pictures(valid: NDArray[np.bool_], bridges: NDArray[np.int64]) -> dict[str, Any]:
@@ -52,10 +53,12 @@ def _shades(valid: NDArray[np.bool_], block: int) -> NDArray[np.uint8]:
     count = np.add.reduceat(valid.astype(np.int32), rows, axis=0)
     count = np.add.reduceat(count, columns, axis=1)
     size = np.outer(np.diff(rows, append=m), np.diff(columns, append=n))
-    shade = np.rint(count / size * (_SHADES - 1)).astype(np.int64)
-    mixed = (count > 0) & (count < size)
-    shade[mixed] = np.clip(shade[mixed], 2, _SHADES - 4)
-    return shade.astype(np.uint8)
+    share = count / size
+    low, high = _MIXED_SHADES
+    mixed = np.rint(low + share * (high - low))
+    shade = np.where((count > 0) & (count < size), mixed, share * (_SHADES - 1))
+    shades: NDArray[np.uint8] = shade.astype(np.uint8)
+    return shades
 
 
 def _tiles(valid: NDArray[np.bool_], bridges: NDArray[np.int64]) -> dict[str, Any]:

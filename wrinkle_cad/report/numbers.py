@@ -4,9 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, Final
 
 from .markup import Element, node
+
+
+TIMES: Final = "\N{MULTIPLICATION SIGN}"
+_CLOSE_UNITS: Final = ("°", "%", TIMES)
 
 
 @dataclass(frozen=True, slots=True)
@@ -16,7 +20,7 @@ class Numbers:
     summary: Mapping[str, Any]
     """What NAME.json holds."""
 
-    def get(self, path: str) -> Any:  # noqa: ANN401 - anything that JSON holds
+    def get(self, path: str) -> Any:
         """Returns the value at a path; None where a part of it is missing."""
         value: Any = self.summary
         for part in path.strip("/").split("/"):
@@ -50,7 +54,7 @@ def written(value: float, unit: str = "", digits: int | None = None) -> str:
 
     Args:
         value: the number; a whole number keeps all its digits.
-        unit: written behind it; a degree sign and a per cent sign stand close.
+        unit: written behind it; signs stand close.
         digits: decimals; four significant digits when None.
     """
     if isinstance(value, int):
@@ -65,4 +69,4 @@ def written(value: float, unit: str = "", digits: int | None = None) -> str:
         text = "\N{MINUS SIGN}" + text[1:]
     if not unit:
         return text
-    return f"{text}{'' if unit in ('°', '%') else chr(0xA0)}{unit}"
+    return f"{text}{'' if unit in _CLOSE_UNITS else chr(0xA0)}{unit}"

@@ -80,7 +80,9 @@ def _header(numbers: Numbers) -> list[Element]:
     return [
         node(
             "header",
-            node("p", "Strip report" + (f" \N{MIDDLE DOT} {made}" if made else ""), class_="eyebrow"),
+            node(
+                "p", "Strip report" + (f" \N{MIDDLE DOT} {made}" if made else ""), class_="eyebrow"
+            ),
             node("h1", str(numbers.get("/input/file") or "Strip")),
         )
     ]

@@ -5,9 +5,10 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Final
 
-from .. import settings
-from .markup import Element, node
-from .numbers import Numbers
+from wrinkle_cad import settings
+
+from .markup import Element, append, node
+from .numbers import TIMES, Numbers
 from .views import MeshView, StripView
 
 _IDLE: Final = "Point at the strip: the same bridge lights up in every view."
@@ -28,17 +29,24 @@ def figures_panel(numbers: Numbers) -> Element:
     worst = _worst_strip(numbers)
     entry, said = f"/strips/{worst}", f"/verdict/strips/{worst}"
     of = node("small", " of ", numbers.show(f"{entry}/interior_bridges"))
+    if numbers.get(f"{entry}/inflection_bridges"):
+        append(of, ", ")
+        append(of, numbers.show(f"{entry}/inflection_bridges"))
+        append(of, " at inflections")
     tiles = (
         ("Invalid bridges", [numbers.show(f"{entry}/invalid_bridges"), of]),
-        ("Rail they cover", [numbers.show(f"{said}/invalid_percent", "%", 1)]),
+        ("Rail not developable", [numbers.show(f"{said}/invalid_percent", "%", 1)]),
         ("Largest fold", [numbers.show(f"{entry}/max_fold_deg", "°", 2)]),
         ("Largest twist", [numbers.show(f"{entry}/max_twist_deg", "°", 2)]),
         ("Area of the pattern", [numbers.show(f"{entry}/area_pattern_mm2", "mm²", 1)]),
-        ("Price of developability", [numbers.show(f"{said}/price_of_developability", "×", 2)]),
+        ("Price of developability", [numbers.show(f"{said}/price_of_developability", TIMES, 2)]),
     )
     return node(
         "dl",
-        *(node("div", node("dt", title), node("dd", *parts), class_="tile") for title, parts in tiles),
+        *(
+            node("div", node("dt", title), node("dd", *parts), class_="tile")
+            for title, parts in tiles
+        ),
         class_="tiles",
     )
 
@@ -139,7 +147,10 @@ def _zoom() -> Element:
     buttons = (("+", "Nearer"), ("\N{MINUS SIGN}", "Further"), ("\N{WHITE SQUARE}", "Whole"))
     return node(
         "div",
-        *(node("button", sign, type="button", title=title, aria_label=title) for sign, title in buttons),
+        *(
+            node("button", sign, type="button", title=title, aria_label=title)
+            for sign, title in buttons
+        ),
         class_="zoom",
     )
 
@@ -148,10 +159,8 @@ def _matrix_card(numbers: Numbers, index: int, view: StripView) -> Element:
     local = [_key("local", "local search", "dash")] if view.local is not None else []
     return node(
         "div",
-        node("h2", "Validity matrix", class_="head"),
-        node(
-            "div", node("canvas", class_="matrix", aria_label="Validity matrix"), _zoom(), class_="plot"
-        ),
+        node("div", node("h2", "Validity matrix"), _zoom(), class_="head"),
+        node("div", node("canvas", class_="matrix", aria_label="Validity matrix"), class_="plot"),
         node(
             "div",
             _key("valid-cell", "locally convex", "box"),
@@ -224,12 +233,9 @@ def _pattern_card(view: StripView) -> Element:
     return node(
         "div",
         node("div", node("h2", "Flat pattern"), node("p", _IDLE, class_="readout"), class_="head"),
-        node("div", node("fieldset", node("legend", "Show"), *layers), class_="toolbar"),
+        node("div", node("fieldset", node("legend", "Show"), *layers), _zoom(), class_="toolbar"),
         node(
-            "div",
-            node("canvas", class_="pattern", aria_label="Flat pattern"),
-            _zoom(),
-            class_="plot flat",
+            "div", node("canvas", class_="pattern", aria_label="Flat pattern"), class_="plot flat"
         ),
         class_="card wide",
     )

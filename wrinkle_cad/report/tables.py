@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any, Final
 
 from .markup import Child, Element, node
-from .numbers import Numbers
+from .numbers import TIMES, Numbers
 
 _SIGN: Final = {"developable": "\N{CHECK MARK}", "inflection": "~", "not-developable": "!"}
 _PASSED: Final = {True: ("PASS", "pass"), False: ("FAIL", "fail")}
@@ -41,7 +41,9 @@ def verdict_panel(numbers: Numbers) -> Element:
 
 def _limits(said: Mapping[str, Any]) -> Element:
     if said["passed"] is None:
-        return node("div", "No limits were given, so nothing is passed or refused.", class_="limits note")
+        return node(
+            "div", "No limits were given, so nothing is passed or refused.", class_="limits note"
+        )
     word, kind = _PASSED[bool(said["passed"])]
     box = node(
         "div",
@@ -50,7 +52,9 @@ def _limits(said: Mapping[str, Any]) -> Element:
         class_="limits",
     )
     if said["missed"]:
-        box = node("div", box, node("ul", *(node("li", line) for line in said["missed"]), class_="missed"))
+        box = node(
+            "div", box, node("ul", *(node("li", line) for line in said["missed"]), class_="missed")
+        )
     return box
 
 
@@ -91,9 +95,15 @@ def table(columns: Sequence[tuple[str, bool]], rows: Sequence[Element]) -> Eleme
     return node("div", node("table", node("thead", node("tr", *head)), body), class_="scroll")
 
 
-def cell(*content: Child, right: bool = False) -> Element:
-    """A table cell; ``right`` for numbers."""
-    return node("td", *content, **_number_class(right))
+def cell(*content: Child, right: bool = False, kind: str = "") -> Element:
+    """A table cell.
+
+    Args:
+        content: what stands in it.
+        right: whether it holds a number.
+        kind: ``name`` (any length), ``word`` (never broken), ``text`` (sentences), ``key``.
+    """
+    return node("td", *content, **({"class_": kind} if kind else _number_class(right)))
 
 
 def _number_class(right: bool) -> dict[str, str]:
@@ -129,9 +139,9 @@ def _strips_card(numbers: Numbers) -> Element:
             ),
             *(numbers.show(f"{entry}/max_{key}_deg", "°", 2) for key in ("fold", "twist")),
             *(numbers.show(f"{entry}/{key}") for key in ("bending", "least_bending")),
-            numbers.show(f"/verdict/strips/{at}/price_of_developability", "×", 2),
+            numbers.show(f"/verdict/strips/{at}/price_of_developability", TIMES, 2),
         ]
-        name = cell(_name(numbers, at))
+        name = cell(_name(numbers, at), kind="name")
         rows.append(node("tr", name, *(cell(figure, right=True) for figure in shown)))
     note = (
         "Price: bending energy of the strip over that of the one that bends least. Far above 1,"
@@ -151,7 +161,7 @@ def _seams_card(numbers: Numbers) -> Element:
             rows.append(
                 node(
                     "tr",
-                    cell(f"{_name(numbers, at)}, {title}"),
+                    cell(f"{_name(numbers, at)}, {title}", kind="name"),
                     cell(numbers.show(f"{seam}/space", "mm", 3), right=True),
                     cell(numbers.show(f"{seam}/pattern", "mm", 3), right=True),
                     cell(numbers.show(difference, "mm", 4), right=True),
@@ -160,7 +170,7 @@ def _seams_card(numbers: Numbers) -> Element:
         rows.append(
             node(
                 "tr",
-                cell(f"{_name(numbers, at)}, area"),
+                cell(f"{_name(numbers, at)}, area", kind="name"),
                 cell(numbers.show(f"{entry}/area_3d_mm2", "mm²", 2), right=True),
                 cell(numbers.show(f"{entry}/area_pattern_mm2", "mm²", 2), right=True),
                 cell(),
@@ -188,25 +198,26 @@ def _gaps_card(numbers: Numbers) -> Element | None:
     if not rows:
         return None
     note = "Runs of bridges that are not locally convex. Click a row to see its middle."
-    return _card("Where it is not developable", table(columns, rows), node("p", note, class_="note"))
+    return _card(
+        "Where it is not developable", table(columns, rows), node("p", note, class_="note")
+    )
 
 
 def _gap_row(numbers: Numbers, at: int, number: int, gap: Mapping[str, Any]) -> Element:
     path = f"/strips/{at}/gaps/{number}"
-    ends = [numbers.show(f"{path}/first_bridge")]
+    span: list[Child] = [numbers.show(f"{path}/first_bridge")]
     if gap["last_bridge"] != gap["first_bridge"]:
-        ends.append(numbers.show(f"{path}/last_bridge"))
-    span: list[Child] = [ends[0], *([" to ", ends[1]] if len(ends) > 1 else [])]
+        span += [" to ", numbers.show(f"{path}/last_bridge")]
     return node(
         "tr",
-        cell(_name(numbers, at)),
-        cell(gap["kind"]),
+        cell(_name(numbers, at), kind="name"),
+        cell(gap["kind"], kind="word"),
         cell(*span, right=True),
         cell(numbers.show(f"{path}/p_length_mm", "mm", 2), right=True),
         cell(numbers.show(f"{path}/q_length_mm", "mm", 2), right=True),
         cell(numbers.show(f"{path}/angle_defect_deg", "°", 2), right=True),
         cell(numbers.show(f"{path}/twist_deg", "°", 2), right=True),
-        cell(gap["advice"]),
+        cell(gap["advice"], kind="text"),
         data_gap_strip=str(at),
         data_first=str(gap["first_bridge"]),
         data_last=str(gap["last_bridge"]),
@@ -237,7 +248,9 @@ def _stitch_card(numbers: Numbers) -> Element | None:
         for title, key, unit in _STITCH_ROWS
         if key in stitch
     ]
-    rows.append(node("tr", cell("Valid solid geometry"), cell("yes" if stitch["is_valid"] else "no")))
+    rows.append(
+        node("tr", cell("Valid solid geometry"), cell("yes" if stitch["is_valid"] else "no"))
+    )
     return _card("Sewn to the body", table((("", False), ("", True)), rows))
 
 
@@ -253,11 +266,11 @@ def _pairs_card(
             continue
         is_number = isinstance(value, int | float) and not isinstance(value, bool)
         shown = numbers.show(f"{path}/{key}", unit, digits) if is_number else _words(value)
-        rows.append(node("tr", cell(key.replace("_", " ")), cell(shown)))
+        rows.append(node("tr", cell(key.replace("_", " "), kind="key"), cell(shown, kind="name")))
     return _card(title, table((("", False), ("", False)), rows))
 
 
-def _words(value: Any) -> str:  # noqa: ANN401 - a setting of any type
+def _words(value: Any) -> str:
     if isinstance(value, bool):
         return "yes" if value else "no"
     if isinstance(value, list | tuple):

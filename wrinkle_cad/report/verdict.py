@@ -82,12 +82,9 @@ def judge(entries: Sequence[Mapping[str, Any]], limits: Limits) -> Verdict:
     """
     strips = tuple(_judge_strip(entry, limits) for entry in entries)
     states = {strip.state for strip in strips}
-    state = next((state for state in _WORST_FIRST if state in states), "developable")
+    state = next((state for state in _WORST_FIRST if state in states), _WORST_FIRST[-1])
     missed = tuple(line for strip in strips for line in strip.missed)
-    if len(strips) == 1:
-        headline = strips[0].sentence
-    else:
-        headline = _headline(state, strips)
+    headline = strips[0].sentence if len(strips) == 1 else _headline(state, strips)
     return Verdict(
         state=state,
         headline=headline,
@@ -179,11 +176,16 @@ def _sentence(entry: Mapping[str, Any], state: State) -> str:
     )
     if state == "developable":
         return f"Developable: all {entry['interior_bridges']:,} bridges; {figures}."
-    rulings = f"{inflections:,} inflection ruling{'s' if inflections != 1 else ''}"
     if state == "inflection":
-        return f"Developable but for {rulings} (of {entry['interior_bridges']:,}); {figures}."
+        # One ruling where the bend changes sides may show as a run of bridges.
+        runs = sum(gap["kind"] == "inflection" for gap in entry["gaps"])
+        rulings = f"{runs:,} inflection ruling{'s' if runs != 1 else ''}"
+        return (
+            f"Developable but for {rulings} ({inflections:,} of"
+            f" {entry['interior_bridges']:,} bridges); {figures}."
+        )
     invalid = int(entry["invalid_bridges"]) - inflections
-    beside = f" (and {rulings})" if inflections else ""
+    beside = f" (and {inflections:,} at inflection rulings)" if inflections else ""
     return (
         f"Not developable: {invalid:,} of {entry['interior_bridges']:,} bridges{beside},"
         f" covering {_figure(_invalid_mm(entry))} mm of rail; {figures}."

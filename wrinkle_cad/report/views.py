@@ -14,11 +14,12 @@ from typing import Any, Final, Literal
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..errors import InputError
-from ..pattern.piece import PatternPiece
-from ..strip.gaps import Gap
-from ..strip.triangulation import Triangulation
-from ..strip.unrolling import Unrolling
+from wrinkle_cad.errors import InputError
+from wrinkle_cad.pattern.piece import PatternPiece
+from wrinkle_cad.strip.gaps import Gap
+from wrinkle_cad.strip.triangulation import Triangulation
+from wrinkle_cad.strip.unrolling import Unrolling
+
 from .flat import bridge_ends
 from .matrix import matrix_pictures
 

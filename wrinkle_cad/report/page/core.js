@@ -171,7 +171,7 @@ const Report = (() => {
       else if (event.key === "-") zoom(1 / 1.5, ...center());
       else if (event.key === "0") reset();
     });
-    const tools = canvas.parentElement.querySelector(".zoom");
+    const tools = canvas.closest(".card").querySelector(".zoom");
     if (tools) {
       const [into, out, whole] = tools.querySelectorAll("button");
       into.addEventListener("click", () => zoom(1.6, ...center()));

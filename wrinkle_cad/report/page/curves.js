@@ -8,13 +8,19 @@ Report.curves = (strip, canvas) => {
   let box = { width: 1, height: 1 };
   const x = (at) => margin.left + (at / end) * (box.width - margin.left - margin.right);
 
-  /* Energy per mm in equal bins: single bridges alternate between flat and folded pairs. */
+  /* Energy per mm in equal bins, that of a bridge spread evenly from the bridge before to the one after:
+     single bridges alternate between flat and folded ones. */
   function density(path, bins) {
-    const out = new Float64Array(bins);
+    const out = new Float64Array(bins), width = end / bins;
     for (let k = 1; k < path.count - 1; k += 1) {
-      out[Math.min(bins - 1, Math.floor((path.at[k] / end) * bins))] += path.bending[k - 1];
+      const low = path.at[k - 1], high = Math.max(path.at[k + 1], low + width * 1e-6);
+      const first = Math.max(0, Math.floor(low / width)), last = Math.min(bins - 1, Math.floor(high / width));
+      for (let bin = first; bin <= last; bin += 1) {
+        const covered = Math.max(0, Math.min(high, (bin + 1) * width) - Math.max(low, bin * width));
+        out[bin] += (path.bending[k - 1] * covered) / (high - low) / width;
+      }
     }
-    return out.map((energy) => (energy * bins) / end);
+    return out;
   }
   function steps(context, values, y, style, width, dash) {
     context.beginPath();
@@ -50,15 +56,16 @@ Report.curves = (strip, canvas) => {
   function drawEnergy(context, top, bottom) {
     const bins = Math.max(8, Math.min(160, Math.floor(strip.chosen.count / 3), Math.floor(box.width / 4)));
     const all = [strip.local, strip.least, strip.chosen].map((path) => (path ? density(path, bins) : null));
-    const high = Math.max(1e-12, ...all.filter(Boolean).map((values) => Math.max(...values)));
+    const most = Math.max(...all.filter(Boolean).map((values) => Math.max(...values)));
+    const high = most > 1e-12 ? most : 1;
     const middle = [...all[2]].sort((a, b) => a - b)[bins >> 1];
-    const logarithmic = high > 40 * Math.max(middle, high * 1e-12);
+    const logarithmic = most > 1e-12 && high > 40 * Math.max(middle, high * 1e-12);
     const low = logarithmic ? Math.max(high * 1e-5, Math.min(middle / 30 || high, high / 1000)) : 0;
     const share = logarithmic
       ? (value) => Math.log(Math.max(value, low) / low) / Math.log((high * 1.5) / low)
       : (value) => value / (high * 1.08);
     const y = (value) => bottom - Math.max(0, Math.min(1, share(value))) * (bottom - top);
-    let marks = ticks(0, high, 4);
+    let marks = most > 1e-12 ? ticks(0, high, 4) : [0];
     if (logarithmic) {
       marks = [];
       for (let power = Math.ceil(Math.log10(low)); 10 ** power <= high * 1.5; power += 1) marks.push(10 ** power);

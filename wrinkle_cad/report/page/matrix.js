@@ -2,7 +2,7 @@
 /* The validity matrix with the chosen path over it: P upwards, Q to the right. */
 Report.matrix = (strip, canvas) => {
   const { color, ticks, stateOf } = Report;
-  const margin = { left: 46, right: 10, top: 10, bottom: 36 };
+  const margin = { left: 60, right: 10, top: 10, bottom: 36 };
   const pictures = new Map();
   const limit = Math.max(4, Math.max(strip.m, strip.n) / 12);
   const request = Report.surface(canvas, draw);

@@ -127,11 +127,14 @@ Report.space = (canvas, panel) => {
     box.querySelector(".what").textContent = colorBy === "twist" ? "Twist along a bridge" : "Fold at a bridge";
   }
   function frame() {
-    const box = new THREE.Box3();
+    /* The strips fill the view; of a larger body as much as fits around them is seen. */
+    const box = new THREE.Box3(), whole = new THREE.Box3();
     items.forEach((item) => { if (item.group.visible) box.expandByObject(item.group); });
-    if (solid && solid.visible) box.expandByObject(solid);
-    if (box.isEmpty()) return;
-    const middle = box.getCenter(new THREE.Vector3()), radius = Math.max(1e-6, box.getSize(new THREE.Vector3()).length() / 2);
+    if (solid && solid.visible) whole.expandByObject(solid);
+    const half = (space) => (space.isEmpty() ? 0 : space.getSize(new THREE.Vector3()).length() / 2);
+    const radius = box.isEmpty() ? half(whole) : Math.min(Math.max(half(box), half(whole)), 1.2 * half(box));
+    if (!(radius > 0)) return;
+    const middle = (box.isEmpty() ? whole : box).getCenter(new THREE.Vector3());
     const fit = radius / Math.sin((camera.fov * Math.PI) / 360) / Math.min(1, camera.aspect) * 0.8;
     camera.position.copy(middle).add(new THREE.Vector3(0.35, -0.8, 0.62).normalize().multiplyScalar(fit));
     camera.near = fit / 500;
