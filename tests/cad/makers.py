@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
 from pathlib import Path
 
 from OCP.BRepBuilderAPI import BRepBuilderAPI_MakeEdge, BRepBuilderAPI_MakeWire
@@ -29,7 +30,7 @@ def line(start: Point, end: Point) -> TopoDS_Edge:
 def polyline(*points: Point) -> TopoDS_Shape:
     """A wire of straight edges."""
     maker = BRepBuilderAPI_MakeWire()
-    for start, end in zip(points[:-1], points[1:], strict=True):
+    for start, end in pairwise(points):
         maker.Add(line(start, end))
     return maker.Wire()
 

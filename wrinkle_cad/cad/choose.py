@@ -201,7 +201,7 @@ def _picked(cad_file: CadFile, text: str, option: str) -> NamedShape:
     """Finds the one shape that a name or an index means."""
     shapes = cad_file.shapes
     wanted = text.strip()
-    by_name = [shape for shape in shapes if shape.name == wanted]
+    by_name = [shape for shape in shapes if wanted and shape.name == wanted]
     digits = wanted.removeprefix("[").removesuffix("]")
     by_index = [shape for shape in shapes if digits.isdecimal() and shape.index == int(digits)]
     by_case = [shape for shape in shapes if shape.name.casefold() == wanted.casefold()]

@@ -2,17 +2,24 @@
 
 from __future__ import annotations
 
+import math
 from collections import defaultdict
 from collections.abc import Sequence
+from itertools import product
+from typing import Final
 
 import numpy as np
+from numpy.typing import NDArray
+from OCP.BRep import BRep_Builder
 from OCP.BRepBuilderAPI import BRepBuilderAPI_MakeWire
 from OCP.TopExp import TopExp
-from OCP.TopoDS import TopoDS_Edge, TopoDS_Shape
+from OCP.TopoDS import TopoDS_Edge, TopoDS_Shape, TopoDS_Wire
 
 from wrinkle_cad import settings
 
 from .kernel import kernel_step, vertex_point
+
+_NEIGHBOURS: Final = np.array(list(product((-1.0, 0.0, 1.0), repeat=3)))
 
 
 def chain_edges(
@@ -48,15 +55,21 @@ def _nodes(edges: Sequence[TopoDS_Edge], gap: float) -> list[tuple[int, int]]:
         for edge in edges
         for vertex in (TopExp.FirstVertex_s(edge, True), TopExp.LastVertex_s(edge, True))
     ]
-    known: list[int] = []
-    numbers = []
+    # Cells of one gap's width: whatever is near lies in the same or in a neighbouring cell.
+    cells: dict[tuple[float, ...], list[int]] = defaultdict(list)
+    numbers: list[int] = []
     for i, point in enumerate(points):
-        near = np.linalg.norm(np.array([points[j] for j in known]) - point, axis=1) if known else []
-        hits = np.flatnonzero(np.asarray(near) <= gap)
-        if len(hits) == 0:
-            known.append(i)
-        numbers.append(int(hits[0]) if len(hits) else len(known) - 1)
+        home = np.floor(point / gap)
+        around = (tuple(home + step) for step in _NEIGHBOURS)
+        near = [j for cell in around for j in cells.get(cell, ()) if _apart(points, i, j) <= gap]
+        if not near:
+            cells[tuple(home)].append(i)
+        numbers.append(min(near, default=i))
     return list(zip(numbers[::2], numbers[1::2], strict=True))
+
+
+def _apart(points: list[NDArray[np.float64]], i: int, j: int) -> float:
+    return math.dist(points[i], points[j])
 
 
 def _chain_through(
@@ -92,4 +105,15 @@ def _joined(edges: list[TopoDS_Edge]) -> TopoDS_Shape:
         maker = BRepBuilderAPI_MakeWire()
         for edge in edges:
             maker.Add(edge)
+            if not maker.IsDone():
+                return _as_they_are(edges)
         return maker.Wire()
+
+
+def _as_they_are(edges: list[TopoDS_Edge]) -> TopoDS_Wire:
+    """Returns a wire whose edges do not share vertices: the kernel joins exact ends only."""
+    wire, builder = TopoDS_Wire(), BRep_Builder()
+    builder.MakeWire(wire)
+    for edge in edges:
+        builder.Add(wire, edge)
+    return wire
