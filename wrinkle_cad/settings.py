@@ -235,6 +235,18 @@ THIN_FACE_PER_SIZE: Final = 5e-7
 PLANE_GAP: Final = 2e-8
 """mm; a curve and an apex within this of one plane make a planar face instead of a cone."""
 
+CHECK_ZERO: Final = 1e-6
+"""mm; a DXF file's segments shorter than this have no length, ends closer than this meet."""
+
+CHECK_NEAR_MISS: Final = 1.0
+"""mm; free ends closer than this were meant to meet."""
+
+CHECK_SMALLEST: Final = 2.0
+"""mm; a drawing smaller than this was probably written in another unit."""
+
+CHECK_LARGEST: Final = 20_000.0
+"""mm; a drawing larger than this was probably written in another unit."""
+
 
 def planarity_from(tolerance: float) -> float:
     """Returns the planarity in mm that fits a chord tolerance in mm."""

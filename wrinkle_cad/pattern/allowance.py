@@ -16,7 +16,7 @@ from wrinkle_cad import settings
 
 from .options import PerSide
 from .outline import closed_turns, corner_vertices
-from .piece import Bools, Floats, Ints, Outline, frozen, make_outline
+from .piece import Floats, Ints, Outline, frozen, make_outline
 
 
 def cut_outline(
@@ -49,38 +49,35 @@ def cut_outline(
 def _parts(
     sew: Outline, widths: Floats, mitre_limit: float, tolerance: float
 ) -> list[shapely.Polygon]:
-    steps = np.roll(sew.points, -1, axis=0) - sew.points
-    along = steps / np.linalg.norm(steps, axis=1)[:, None]
+    """Returns polygons whose union is the region to cut.
+
+    Neighbours share their corners to the last bit: else the union would keep cracks between them.
+    """
+    after = np.roll(sew.points, -1, axis=0)
+    along = after - sew.points
+    along = along / np.linalg.norm(along, axis=1)[:, None]
     outward = np.column_stack((along[:, 1], -along[:, 0]))
     width = widths[sew.sides]
-    parts: list[shapely.Polygon] = [shapely.Polygon(sew.points)]
-    parts.extend(_rectangles(sew.points, steps, outward * width[:, None], width > 0.0))
+    first, second = (points + width[:, None] * outward for points in (sew.points, after))
+    has_width = width > 0.0
+    rings = np.stack((sew.points, first, second, after), axis=1)[has_width]
+    parts: list[shapely.Polygon] = [shapely.Polygon(sew.points), *shapely.polygons(rings)]
     turn = closed_turns(sew.points)
-    before = np.roll(np.arange(len(turn)), 1)
-    for i in np.flatnonzero((turn > 0.0) & (width + width[before] > 0.0)):
-        j = int(before[i])
+    for i in np.flatnonzero((turn > 0.0) & (has_width | np.roll(has_width, 1))):
+        j = i - 1
         if sew.corners[i]:
-            wedge = _mitre(along[j], along[i], width[j], width[i], mitre_limit)
+            tips = _mitre(along[j], along[i], width[j], width[i], mitre_limit)
         else:
-            wedge = _fan(outward[j], float(turn[i]), width[i], tolerance)
-        ring = sew.points[i] + np.vstack((np.zeros(2), wedge))
+            tips = _fan(outward[i], float(turn[i]), width[i], tolerance)
+        ring = np.vstack((sew.points[i], second[j], sew.points[i] + tips, first[i]))
         parts.append(shapely.Polygon(ring))
     return parts
-
-
-def _rectangles(
-    points: Floats, steps: Floats, shift: Floats, has_width: Bools
-) -> list[shapely.Polygon]:
-    first, second = points[has_width], (points + steps)[has_width]
-    out = shift[has_width]
-    rings = np.stack((first, first + out, second + out, second), axis=1)
-    return list(shapely.polygons(rings))
 
 
 def _mitre(
     into: Floats, onward: Floats, width_in: float, width_on: float, mitre_limit: float
 ) -> Floats:
-    """Returns the wedge of a corner seen from it: offset point, tip (or clipped tip), offset point.
+    """Returns the tip of a corner's wedge, or both ends of a clipped tip, or none: (0...2, 2).
 
     ``into`` and ``onward`` are the unit directions of the two sides, turning left.
     """
@@ -94,27 +91,29 @@ def _mitre(
         ahead = (width_on - width_in * cosine) / sine
         behind = (width_in - width_on * cosine) / sine
         if ahead < 0.0 or behind < 0.0:
-            return np.vstack((start, stop))
-        tip = start + ahead * into
+            return np.zeros((0, 2))
+        tip: Floats = start + ahead * into
         if np.hypot(*tip) <= reach:
-            return np.vstack((start, tip, stop))
+            return np.vstack((tip,))
         axis = tip
     axis = axis / np.hypot(*axis)
     first = start + (reach - start @ axis) / (into @ axis) * into
     second = stop + (reach - stop @ axis) / (onward @ axis) * onward
-    return np.vstack((start, first, second, stop))
+    return np.vstack((first, second))
 
 
 def _fan(outward: Floats, turn: float, width: float, tolerance: float) -> Floats:
-    """Returns facets around an arc of ``turn`` rad, outside it by at most ``tolerance``."""
+    """Returns the tips of facets around an arc, outside it by at most ``tolerance``, (c, 2).
+
+    The arc of ``turn`` rad ends where its segment starts, which looks ``outward``.
+    """
     largest = 2.0 * np.arccos(width / (width + tolerance))
     count = max(1, int(np.ceil(turn / largest)))
-    angle = np.arctan2(outward[1], outward[0])
-    middles = angle + turn * (np.arange(count) + 0.5) / count
-    radii = np.full(count + 2, width / np.cos(0.5 * turn / count))
-    radii[[0, -1]] = width
-    angles = np.concatenate(([angle], middles, [angle + turn]))
-    return np.column_stack((radii * np.cos(angles), radii * np.sin(angles)))
+    angle = np.arctan2(outward[1], outward[0]) - turn
+    angles = angle + turn * (np.arange(count) + 0.5) / count
+    radius = width / np.cos(0.5 * turn / count)
+    tips: Floats = radius * np.column_stack((np.cos(angles), np.sin(angles)))
+    return tips
 
 
 def _cleaned(ring: shapely.LinearRing, tolerance: float) -> Floats:

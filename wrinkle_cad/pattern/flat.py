@@ -115,6 +115,11 @@ class FlatStrip:
         unit: Floats = laid / np.hypot(*laid)
         return unit
 
+    def middle(self) -> Floats:
+        """Returns a point (2,) inside the flat strip, half-way along it."""
+        point: Floats = self._middle_triangle()[1].mean(axis=0)
+        return point
+
     def _middle_triangle(self) -> tuple[Floats, Floats]:
         first, second = self.bridges[:-1], self.bridges[1:]
         is_p_step = second[:, 0] > first[:, 0]

@@ -102,7 +102,9 @@ def _one_piece(
     grain = strip.flat_direction(chosen.grain, name="grain")
     stretch = None
     if chosen.stretch is not None:
-        stretch = _line_inside(sew, strip.flat_direction(chosen.stretch, name="stretch"), 0.3)
+        stretch = _line_inside(
+            sew, strip.middle(), strip.flat_direction(chosen.stretch, name="stretch"), share=0.3
+        )
     rulings, fold = _rulings(strip, chosen)
     return PatternPiece(
         name=name,
@@ -115,7 +117,7 @@ def _one_piece(
         cut_outs=cut_outs,
         widths=widths,
         notches=placed_notches(strip, arcs, cut, widths, chosen),
-        grain_line=_line_inside(sew, grain, 0.7),
+        grain_line=_line_inside(sew, strip.middle(), grain, share=0.7),
         stretch_line=stretch,
         rulings=rulings,
         ruling_fold=fold,
@@ -138,12 +140,9 @@ def _widths(strip: FlatStrip, chosen: PieceSettings) -> PerSide:
     )
 
 
-def _line_inside(sew: Outline, direction: Floats, share: float) -> Floats:
-    """Returns a line (2, 2) through the middle of the piece, ``share`` of what fits into it."""
+def _line_inside(sew: Outline, middle: Floats, direction: Floats, *, share: float) -> Floats:
+    """Returns a line (2, 2) at the middle of the piece, ``share`` of what fits into it there."""
     region = shapely.Polygon(sew.points)
-    middle = np.array(region.centroid.coords[0])
-    if not region.contains(shapely.Point(middle)):
-        middle = np.array(region.representative_point().coords[0])
     reach = 2.0 * np.ptp(sew.points, axis=0).sum() * direction
     inside = region.intersection(shapely.LineString((middle - reach, middle + reach)))
     lines = [part for part in shapely.get_parts(inside) if part.geom_type == "LineString"]
