@@ -37,11 +37,11 @@ LAYER = {
     "batch": 12,
     "doctor": 12,
     "screen": 12,
-    "batch_arguments": 11,
-    "batch_display": 11,
-    "batch_screen": 12,
-    "cli": 13,
-    "__main__": 14,
+    "batch_arguments": 13,
+    "batch_display": 13,
+    "batch_screen": 14,
+    "cli": 15,
+    "__main__": 16,
 }
 CAD_PACKAGES = {"OCP", "build123d", "cadquery"}
 STRIP_PACKAGES = {"numpy", "numba", "wrinkle_cad"}

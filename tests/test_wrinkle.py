@@ -50,9 +50,9 @@ def test_the_pattern_is_a_sketch_on_xy_of_the_strips_area(strip: WrinkleStrip) -
 
 def test_shell_and_sketch_work_inside_builders(strip: WrinkleStrip) -> None:
     with b3d.BuildPart() as part:
-        b3d.add(strip.shell())
+        b3d.insert(strip.shell())
     with b3d.BuildSketch() as sketch:
-        b3d.add(strip.pattern().sketch)
+        b3d.insert(strip.pattern().sketch)
     assert sketch.sketch.area == pytest.approx(strip.report.area_pattern_mm2, rel=1e-3)
     assert part is not None
 

@@ -13,6 +13,16 @@ from .settings import VERSION
 __version__ = VERSION
 
 _MODULE_OF: Final = {
+    "WrinkleStrip": "wrinkle",
+    "StripReport": "strip_report",
+    "Pattern": "cut_pattern",
+    "PieceSettings": "pattern.options",
+    "Job": "job",
+    "make_job": "job",
+    "JobDone": "outcome",
+    "JobFailed": "outcome",
+    "run_job": "workflow",
+    "Finding": "findings",
     "WrinkleError": "errors",
     "InputError": "errors",
     "JobError": "errors",
