@@ -6,7 +6,8 @@ that neighbour.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+import math
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -46,7 +47,7 @@ class BorderEdge:
 
     def flipped(self) -> BorderEdge:
         """Returns the edge run the other way."""
-        return replace(self, is_forward=not self.is_forward)
+        return BorderEdge(self.edge, self.shape, self.start, self.end, not self.is_forward)
 
 
 Border = tuple[BorderEdge, ...]
@@ -67,7 +68,7 @@ def border_poles(border: Border) -> Floats:
 def straight_edge(start: TopoDS_Vertex, end: TopoDS_Vertex, ends: Floats) -> BorderEdge:
     """Returns the straight edge between two vertices at (2, 3) mm, its parameter the length."""
     way = ends[1] - ends[0]
-    length = float(np.linalg.norm(way))
+    length = math.sqrt(float(way @ way))
     line = Geom_Line(gp_Pnt(*ends[0].tolist()), gp_Dir(*way.tolist()))
     shape = PoleCurve(1, np.array([0.0, length]), np.array([2, 2]), ends, None)
     return BorderEdge(_edge(line, start, end, 0.0, length), shape, start, end)
