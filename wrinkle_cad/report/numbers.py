@@ -8,7 +8,6 @@ from typing import Any, Final
 
 from .markup import Element, node
 
-
 TIMES: Final = "\N{MULTIPLICATION SIGN}"
 _CLOSE_UNITS: Final = ("°", "%", TIMES)
 

@@ -56,6 +56,6 @@
     Report.space(canvas, document.querySelector(".space-panel"));
   } catch (error) {
     canvas.parentElement.classList.add("broken");
-    console.warn("3-D view: " + error.message);
+    console.error("3-D view: " + error.message);
   }
 })();
