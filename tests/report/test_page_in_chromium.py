@@ -1,0 +1,314 @@
+"""The page as a person uses it: opened from disk in Chromium, with the network off."""
+
+from __future__ import annotations
+
+import base64
+import io
+import json
+import time
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+from PIL import Image
+from selenium import webdriver
+from selenium.webdriver.common.action_chains import ActionChains
+from selenium.webdriver.common.by import By
+from selenium.webdriver.remote.webelement import WebElement
+
+from tests.report.strips import cylinder_rails, dome, planar_rails, summary_of, view_of, wavy_rails
+from wrinkle_cad.report.material import Limits
+from wrinkle_cad.report.page import write_page
+from wrinkle_cad.report.views import StripView
+
+pytestmark = pytest.mark.chromium
+
+VIEWS = ("space", "matrix", "curves", "pattern")
+HOSTILE = "</script><script>window.pwned=1</script><img src=x onerror='window.pwned=1'>"
+PATIENCE = 15.0
+
+
+def until(holds: Callable[[], Any], what: str) -> Any:
+    """Waits for a page to get somewhere."""
+    end = time.monotonic() + PATIENCE
+    while time.monotonic() < end:
+        value = holds()
+        if value:
+            return value
+        time.sleep(0.05)
+    raise AssertionError(f"after {PATIENCE} s: {what}")
+
+
+def canvas(browser: webdriver.Chrome, name: str) -> WebElement:
+    return browser.find_element(By.CSS_SELECTOR, f".current canvas.{name}, .stage canvas.{name}")
+
+
+def open_page(
+    browser: webdriver.Chrome,
+    path: Path,
+    html: str,
+    *,
+    width: int = 1280,
+    height: int = 900,
+    dark: bool = False,
+) -> None:
+    path.write_text(html, encoding="utf-8")
+    size = {"width": width, "height": height, "deviceScaleFactor": 1, "mobile": width < 600}
+    scheme = {"name": "prefers-color-scheme", "value": "dark" if dark else "light"}
+    browser.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", size)
+    browser.execute_cdp_cmd("Emulation.setEmulatedMedia", {"features": [scheme]})
+    browser.get_log("browser")
+    browser.get(path.as_uri())
+    for name in VIEWS:
+        until(lambda name=name: canvas(browser, name).get_attribute("data-drawn"), f"{name} drawn")
+
+
+def errors(browser: webdriver.Chrome) -> list[str]:
+    return [line["message"] for line in browser.get_log("browser") if line["level"] == "SEVERE"]
+
+
+def picture(browser: webdriver.Chrome, name: str) -> NDArray[np.uint8]:
+    script = "return document.querySelector(arguments[0]).toDataURL('image/png')"
+    selector = f".current canvas.{name}, .stage canvas.{name}"
+    data = browser.execute_script(script, selector).split(",")[1]
+    return np.asarray(Image.open(io.BytesIO(base64.b64decode(data))).convert("RGBA"))
+
+
+def is_blank(image: NDArray[np.uint8]) -> bool:
+    """Whether less than one pixel in two hundred is drawn in another colour than the corner."""
+    return bool((image != image[0, 0]).any(axis=2).mean() < 0.005)
+
+
+def point_at(browser: webdriver.Chrome, element: WebElement, x: float, y: float) -> None:
+    """Moves the pointer to shares of an element's width and height."""
+    browser.execute_script("arguments[0].scrollIntoView({block: 'center'})", element)
+    size = element.size
+    offset = (round((x - 0.5) * size["width"]), round((y - 0.5) * size["height"]))
+    ActionChains(browser, duration=0).move_to_element_with_offset(element, *offset).perform()
+
+
+def highlights(browser: webdriver.Chrome) -> dict[str, str | None]:
+    return {name: canvas(browser, name).get_attribute("data-highlight") for name in VIEWS}
+
+
+def agreed_highlight(browser: webdriver.Chrome) -> str | None:
+    """The bridge that all views highlight."""
+    found = set(highlights(browser).values())
+    return found.pop() if len(found) == 1 else None
+
+
+@pytest.fixture(scope="module")
+def strip() -> StripView:
+    return view_of(wavy_rails())
+
+
+@pytest.fixture(scope="module")
+def html(strip: StripView) -> str:
+    return write_page(summary_of([strip], Limits(max_fold_deg=5.0)), [strip], dome(60))
+
+
+@pytest.fixture
+def page(browser: webdriver.Chrome, tmp_path: Path, html: str) -> webdriver.Chrome:
+    open_page(browser, tmp_path / "vamp.html", html)
+    return browser
+
+
+def test_the_page_opens_without_errors(page: webdriver.Chrome) -> None:
+    assert errors(page) == []
+    assert page.execute_script("return navigator.onLine") is False
+
+
+def test_an_error_on_the_page_would_be_seen(
+    browser: webdriver.Chrome, tmp_path: Path, html: str
+) -> None:
+    broken = html.replace("Report.space = ", "Report.nowhere = ", 1)
+    path = tmp_path / "broken.html"
+    path.write_text(broken, encoding="utf-8")
+    browser.get(path.as_uri())
+    until(lambda: "3-D view" in " ".join(errors(browser)), "an error in the log")
+    failure = browser.find_element(By.CSS_SELECTOR, ".stage .failure")
+    assert failure.is_displayed()
+
+
+@pytest.mark.parametrize("name", VIEWS)
+def test_every_view_draws(page: webdriver.Chrome, name: str) -> None:
+    assert not is_blank(picture(page, name))
+
+
+def test_a_3d_view_without_layers_is_blank(page: webdriver.Chrome) -> None:
+    before = picture(page, "space")
+    for box in page.find_elements(By.CSS_SELECTOR, "[data-layer]"):
+        box.click()
+    until(lambda: is_blank(picture(page, "space")), "an empty 3-D view")
+    assert not is_blank(before)
+
+
+def test_the_3d_view_turns_zooms_and_returns(page: webdriver.Chrome) -> None:
+    stage = canvas(page, "space")
+    start = picture(page, "space")
+    ActionChains(page, duration=50).drag_and_drop_by_offset(stage, 120, 40).perform()
+    turned = until(
+        lambda: (now := picture(page, "space")).shape == start.shape
+        and (now != start).any()
+        and now.tobytes(),
+        "a turned view",
+    )
+    page.execute_script(
+        "arguments[0].focus(); arguments[0].dispatchEvent(new WheelEvent('wheel',"
+        " {deltaY: -400, bubbles: true, cancelable: true}))",
+        stage,
+    )
+    until(lambda: picture(page, "space").tobytes() != turned, "a nearer view")
+    page.find_element(By.CSS_SELECTOR, ".reset").click()
+    until(lambda: (picture(page, "space") != start).any(axis=2).mean() < 0.02, "the first view")
+
+
+@pytest.mark.parametrize("color_by", ["fold", "twist"])
+def test_bridges_are_coloured_by_what_is_chosen(page: webdriver.Chrome, color_by: str) -> None:
+    before = picture(page, "space")
+    page.execute_script(
+        "document.querySelector(arguments[0]).click()", f"[name=color-by][value={color_by}]"
+    )
+    until(lambda: (picture(page, "space") != before).any(axis=2).mean() > 0.005, "other colours")
+    high = page.find_element(By.CSS_SELECTOR, ".legend .high").text
+    entry = json.loads(
+        page.execute_script("return document.getElementById('summary').textContent")
+    )["strips"][0]
+    assert float(high.rstrip("°")) == pytest.approx(entry[f"max_{color_by}_deg"], abs=0.06)
+
+
+@pytest.mark.parametrize(
+    ("name", "x", "y"), [("matrix", 0.55, 0.45), ("curves", 0.5, 0.3), ("pattern", 0.5, 0.5)]
+)
+def test_pointing_at_a_bridge_lights_it_in_every_view(
+    page: webdriver.Chrome, name: str, x: float, y: float
+) -> None:
+    before = {view: picture(page, view) for view in VIEWS}
+    point_at(page, canvas(page, name), x, y)
+    until(lambda: agreed_highlight(page), "the same bridge in every view")
+    for view in VIEWS:
+        until(lambda view=view: (picture(page, view) != before[view]).any(), f"a change of {view}")
+    line = page.find_element(By.CSS_SELECTOR, ".space-panel .readout").text
+    assert line.startswith(f"vamp wrinkle: bridge {agreed_highlight(page)} of ")
+
+
+def test_pointing_at_the_strip_in_space_lights_the_other_views(page: webdriver.Chrome) -> None:
+    before = {view: picture(page, view) for view in VIEWS}
+    stage = canvas(page, "space")
+    drawn = np.argwhere(strip_pixels(before["space"]))
+    y, x = drawn[len(drawn) // 2] / before["space"].shape[:2]
+    point_at(page, stage, float(x), float(y))
+    until(lambda: agreed_highlight(page), "the same bridge in every view")
+    for view in VIEWS:
+        until(lambda view=view: (picture(page, view) != before[view]).any(), f"a change of {view}")
+    point_at(page, stage, 0.01, 0.01)
+    until(lambda: set(highlights(page).values()) == {None}, "nothing highlighted")
+    assert errors(page) == []
+
+
+def strip_pixels(image: NDArray[np.uint8]) -> NDArray[np.bool_]:
+    """Where the 3-D view is blue or orange: the strip, not the grey body."""
+    red, blue = image[..., 0].astype(int), image[..., 2].astype(int)
+    return np.asarray((abs(red - blue) > 60) & (image[..., 3] > 200))
+
+
+def test_a_row_of_the_gap_list_shows_its_bridge(page: webdriver.Chrome) -> None:
+    row = page.find_element(By.CSS_SELECTOR, "tr[data-first]")
+    page.execute_script("arguments[0].click()", row)
+    first, last = (int(row.get_attribute(f"data-{end}") or "") for end in ("first", "last"))
+    shown = until(lambda: agreed_highlight(page), "the same bridge in every view")
+    assert first <= int(shown) <= last
+
+
+def test_layers_of_the_pattern_can_be_left_out(page: webdriver.Chrome) -> None:
+    for box in page.find_elements(By.CSS_SELECTOR, "[data-pattern-layer]"):
+        before = picture(page, "pattern").tobytes()
+        box.click()
+        until(lambda before=before: picture(page, "pattern").tobytes() != before, "a layer gone")
+
+
+def test_the_matrix_zooms_to_single_bridges(browser: webdriver.Chrome, tmp_path: Path) -> None:
+    view = view_of(wavy_rails(700, 720))
+    assert view.valid is not None
+    html = write_page(summary_of([view]), [view])
+    open_page(browser, tmp_path / "large.html", html)
+    before = picture(browser, "matrix")
+    nearer = canvas(browser, "matrix").find_element(
+        By.XPATH, "ancestor::*[contains(@class,'card')]//button[@title='Nearer']"
+    )
+    for _ in range(9):
+        browser.execute_script("arguments[0].click()", nearer)
+    # The cells around the middle of the matrix are then as wide as their grid lines are apart.
+    until(lambda: (picture(browser, "matrix") != before).any(), "a nearer view")
+    time.sleep(0.3)
+    image = picture(browser, "matrix")
+    assert not is_blank(image)
+    assert errors(browser) == []
+
+
+def test_a_hostile_label_stays_text(browser: webdriver.Chrome, tmp_path: Path) -> None:
+    rails = cylinder_rails(20, 20)
+    views = [view_of(rails, HOSTILE), view_of(planar_rails(), "second")]
+    summary = summary_of(
+        views, Limits(max_fold_deg=0.1, material=HOSTILE), input={"file": HOSTILE}
+    )
+    open_page(browser, tmp_path / "hostile.html", write_page(summary, views, dome(6)))
+    point_at(browser, canvas(browser, "curves"), 0.5, 0.5)
+    until(lambda: agreed_highlight(browser), "the same bridge in every view")
+    assert browser.execute_script("return window.pwned") is None
+    assert browser.find_elements(By.TAG_NAME, "img") == []
+    assert browser.find_element(By.TAG_NAME, "h1").text == HOSTILE
+    assert browser.find_element(By.CSS_SELECTOR, ".readout").text.startswith(HOSTILE)
+    assert browser.find_element(By.CSS_SELECTOR, "[data-tab]").text == HOSTILE
+    assert errors(browser) == []
+
+
+def test_tabs_show_one_strip_at_a_time(browser: webdriver.Chrome, tmp_path: Path) -> None:
+    views = [view_of(cylinder_rails(), "first"), view_of(planar_rails(), "second")]
+    open_page(browser, tmp_path / "two.html", write_page(summary_of(views), views))
+    sections = browser.find_elements(By.CSS_SELECTOR, "[data-strip]")
+    assert [section.is_displayed() for section in sections] == [True, False]
+    browser.find_elements(By.CSS_SELECTOR, "[data-tab]")[1].click()
+    assert [section.is_displayed() for section in sections] == [False, True]
+    until(lambda: canvas(browser, "matrix").get_attribute("data-drawn"), "the second matrix")
+    assert not is_blank(picture(browser, "matrix"))
+
+
+def test_every_number_in_the_browser_is_that_of_the_json(page: webdriver.Chrome) -> None:
+    script = """
+      const summary = JSON.parse(document.getElementById("summary").textContent);
+      return [...document.querySelectorAll("data")].map((shown) => [
+        shown.dataset.path, Number(shown.value),
+        shown.dataset.path.slice(1).split("/").reduce((value, key) => value[key], summary)]);
+    """
+    rows = page.execute_script(script)
+    assert len(rows) > 40
+    assert [row for row in rows if row[1] != row[2]] == []
+
+
+@pytest.mark.parametrize("dark", [False, True])
+@pytest.mark.parametrize("width", [360, 820, 1440])
+def test_nothing_sticks_out_sideways(
+    browser: webdriver.Chrome, tmp_path: Path, html: str, width: int, dark: bool
+) -> None:
+    open_page(browser, tmp_path / "vamp.html", html, width=width, height=800, dark=dark)
+    assert browser.execute_script("return document.documentElement.scrollWidth") <= width
+    ground = browser.execute_script("return getComputedStyle(document.body).backgroundColor")
+    brightness = sum(int(part) for part in ground[4:-1].split(","))
+    assert (brightness < 150) == dark
+    assert not is_blank(picture(browser, "space"))
+
+
+@pytest.mark.parametrize("dark", [False, True])
+def test_the_page_prints(
+    browser: webdriver.Chrome, tmp_path: Path, html: str, dark: bool
+) -> None:
+    open_page(browser, tmp_path / "vamp.html", html, dark=dark)
+    printed = browser.execute_cdp_cmd("Page.printToPDF", {"printBackground": False})["data"]
+    pdf = base64.b64decode(printed)
+    assert pdf.startswith(b"%PDF")
+    assert len(pdf) > 50_000
+    assert errors(browser) == []
