@@ -14,8 +14,6 @@ import sys
 import time
 from pathlib import Path
 
-import numpy as np
-
 from wrinkle_cad.errors import CadError, ExportError
 from wrinkle_cad.job import Job
 from wrinkle_cad.outcome import JobDone, JobFailed, Progress
@@ -94,6 +92,8 @@ def _act(action: str, job: Job, phase: str) -> JobFailed | None:
     if action == "cad":
         raise CadError("sew", "left open")
     if action == "memory":
+        import numpy as np
+
         np.ones(64 * GIB, dtype=np.uint8)
     if action == "creep":
         _creep(lambda: os.kill(os.getpid(), signal.SIGABRT))
@@ -113,6 +113,8 @@ def _act(action: str, job: Job, phase: str) -> JobFailed | None:
 
 def _creep(end: object) -> None:
     """Takes memory in pieces until there is none, then crashes as the kernel does."""
+    import numpy as np
+
     pieces = []
     while True:
         try:

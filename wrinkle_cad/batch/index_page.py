@@ -129,7 +129,7 @@ def _link(record: Record) -> str:
     if not names:
         return name
     target = (PurePosixPath(record.key).parent / names[0]).as_posix()
-    return f'<a href="{html.escape(quote(target))}">{name}</a>'
+    return f'<a href="{html.escape(quote(target.encode("utf-8", "surrogatepass")))}">{name}</a>'
 
 
 def _developability(record: Record) -> str:

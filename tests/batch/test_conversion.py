@@ -1,0 +1,270 @@
+"""A batch resumes, records, and never leaves half of anything."""
+
+from __future__ import annotations
+
+import errno
+import json
+import os
+import shutil
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+from tests.batch.conftest import Bench
+from tests.batch.stand_ins import KINDS
+from wrinkle_cad.batch import delivery, staging
+from wrinkle_cad.batch.events import BatchSummary, FileFinished, FileSkipped
+from wrinkle_cad.batch.lock import locked_folder
+from wrinkle_cad.batch.manifest import Manifest
+from wrinkle_cad.errors import ExportError, InputError
+
+
+def counts(summary: BatchSummary) -> tuple[int, int, int]:
+    return summary.done, summary.failed, summary.skipped
+
+
+def test_a_second_run_does_only_what_is_missing_changed_or_failed(bench: Bench) -> None:
+    bench.put(a="1", b="2", c="3", d="4", e="fail@read")
+    assert counts(bench.run()) == (4, 1, 0)
+    bench.put(b="changed", f="new")
+    (bench.outputs / "c.dxf").unlink()
+    (bench.outputs / "d.dxf").write_text("truncated")
+    assert counts(bench.run()) == (4, 1, 1)
+    redone = {event.label for event in bench.events if isinstance(event, FileFinished)}
+    assert redone == {"b.step", "c.step", "d.step", "e.step", "f.step"}
+    assert counts(bench.run()) == (0, 1, 5)
+    assert b"4 END" in bench.files()["d.dxf"]
+
+
+def test_other_settings_make_everything_again(bench: Bench) -> None:
+    bench.put(a="1", b="2")
+    bench.run()
+    assert counts(bench.run(keywords={"tolerance": 0.04})) == (2, 0, 0)
+    assert counts(bench.run(keywords={"tolerance": 0.04})) == (0, 0, 2)
+
+
+def test_other_versions_make_everything_again(
+    bench: Bench, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    bench.put(a="1")
+    bench.run()
+    versions = {**conversion_versions(), "shapely": "99"}
+    monkeypatch.setattr("wrinkle_cad.batch.conversion.installed_versions", lambda: versions)
+    assert counts(bench.run()) == (1, 0, 0)
+
+
+def conversion_versions() -> dict[str, str]:
+    from wrinkle_cad.versions import installed_versions
+
+    return installed_versions()
+
+
+def test_force_does_everything_again(bench: Bench) -> None:
+    bench.put(a="1")
+    bench.run()
+    assert counts(bench.run(force=True)) == (1, 0, 0)
+
+
+def test_the_manifest_records_what_was_done(bench: Bench) -> None:
+    bench.put(a="1", b="raise@write")
+    bench.run()
+    lines = (bench.outputs / "manifest.jsonl").read_text().splitlines()
+    done, failed = sorted((json.loads(line) for line in lines), key=lambda entry: entry["key"])
+    assert len(done["input_sha256"]) == len(done["settings_sha256"]) == 64
+    assert done["versions"]["wrinkle-cad"]
+    assert {entry["name"] for entry in done["outputs"]} == {f"a.{kind}" for kind in KINDS}
+    assert done["outputs"][0]["bytes"] == len(bench.files()["a.step"])
+    assert done["seconds"]["read"] == 0.01
+    assert (failed["outcome"], failed["phase"]) == ("failed", "write")
+
+
+def test_a_failure_keeps_the_outputs_of_an_earlier_run(bench: Bench) -> None:
+    bench.put(a="1")
+    bench.run()
+    before = bench.files()
+    bench.put(a="SIGKILL@page")
+    bench.run()
+    assert bench.files() == before
+
+
+def test_outputs_that_are_not_written_again_go(bench: Bench) -> None:
+    bench.put(a="1")
+    bench.run()
+    bench.run(force=True, job_function=_one_output_job)
+    assert set(bench.files()) == {"a.json"}
+
+
+def _one_output_job(job: object, *, progress: object = None) -> object:
+    from tests.batch.stand_ins import worker_id_job
+
+    return worker_id_job(job)  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize("name", [f"a.{kind}" for kind in KINDS])
+def test_a_file_of_somebody_else_is_never_replaced(bench: Bench, name: str) -> None:
+    bench.put(a="1")
+    bench.outputs.mkdir()
+    (bench.outputs / name).write_text("not ours")
+    assert counts(bench.run()) == (0, 1, 0)
+    assert bench.files() == {name: b"not ours"}
+    (event,) = [event for event in bench.events if isinstance(event, FileFinished)]
+    assert name in event.record.message
+
+
+def test_files_that_would_collide_are_told_apart_in_the_manifest(bench: Bench) -> None:
+    bench.put(a="1")
+    (bench.inputs / "A.stp").write_text("2")
+    assert counts(bench.run()) == (1, 1, 0)
+    assert counts(bench.run()) == (0, 1, 1)
+    page = (bench.outputs / "index.html").read_text()
+    assert "A.stp" in page
+    assert "a.step" in page
+
+
+def test_output_folders_mirror_input_folders(bench: Bench) -> None:
+    bench.put(**{"x/y/a": "1", "b": "2"})
+    bench.run()
+    assert {"x/y/a.step", "b.step"} <= set(bench.files())
+
+
+def test_a_folder_in_use_is_refused(bench: Bench) -> None:
+    bench.put(a="1")
+    bench.outputs.mkdir()
+    with locked_folder(bench.outputs), pytest.raises(InputError, match="another batch"):
+        bench.run()
+
+
+def test_an_unreadable_input_costs_itself(bench: Bench, monkeypatch: pytest.MonkeyPatch) -> None:
+    from wrinkle_cad.batch import conversion
+
+    real = conversion.hash_file
+
+    def refuse(path: Path) -> str:
+        if path.name == "a.step" and path.parent == bench.inputs:
+            raise OSError(errno.EIO, os.strerror(errno.EIO))
+        return real(path)
+
+    monkeypatch.setattr(conversion, "hash_file", refuse)
+    bench.put(a="1", b="2")
+    assert counts(bench.run()) == (1, 1, 0)
+
+
+def test_a_full_disk_stops_the_batch_before_files_fail(bench: Bench) -> None:
+    bench.put(a="1")
+    with pytest.raises(ExportError, match="MiB free"):
+        bench.run(least_disk_mib=10**9)
+    assert not bench.files()
+
+
+def test_a_disk_that_fills_up_stops_the_batch_which_goes_on_later(
+    bench: Bench, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    bench.put(a="1", b="2", c="3", d="4")
+    usage = shutil.disk_usage(bench.inputs)
+    looks = iter([usage.free] * 3)
+
+    def fill(path: object) -> object:
+        return usage._replace(free=next(looks, 0))
+
+    monkeypatch.setattr("wrinkle_cad.batch.disk_space.shutil.disk_usage", fill)
+    summary = bench.run()
+    assert (summary.done, summary.left) == (2, 2)
+    assert "0 MiB free" in summary.stopped_by
+    monkeypatch.undo()
+    assert counts(bench.run()) == (2, 0, 2)
+
+
+@pytest.mark.parametrize("room", [0, 1, 100, 5000, 20_000, 40_000])
+def test_a_small_disk_leaves_nothing_half_written(bench: Bench, room: int) -> None:
+    """The outputs' disk takes ``room`` bytes more, by a limit on the size of files."""
+    bench.put(a="x" * 400, b="y" * 10)
+    summary = bench.run(job_function=_with_room(room))
+    assert summary.done + summary.failed == 2
+    files = bench.files()
+    for name in ("a", "b"):
+        whole = {key for key in files if key.startswith(f"{name}.")}
+        assert whole in (set(), {f"{name}.{kind}" for kind in KINDS})
+    assert all(content.endswith(b"END\n") for content in files.values())
+    assert not list(staging.leftovers(bench.outputs))
+
+
+class _with_room:  # noqa: N801 - reads as a function
+    """A job whose process may write files of a size at most."""
+
+    def __init__(self, room: int) -> None:
+        self.room = room
+
+    def __call__(self, job: object, *, progress: object = None) -> object:
+        import resource
+        import signal
+
+        from tests.batch.stand_ins import job_by_content
+
+        signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+        resource.setrlimit(resource.RLIMIT_FSIZE, (self.room, resource.RLIM_INFINITY))
+        try:
+            return job_by_content(job)  # type: ignore[arg-type]
+        finally:
+            resource.setrlimit(
+                resource.RLIMIT_FSIZE, (resource.RLIM_INFINITY, resource.RLIM_INFINITY)
+            )
+
+
+@pytest.mark.parametrize("step", ["commit_staging", "_check_foreign"])
+def test_a_commit_that_fails_costs_one_file(
+    bench: Bench, monkeypatch: pytest.MonkeyPatch, step: str
+) -> None:
+    bench.put(a="1", b="2")
+    real: Callable[..., object] = getattr(delivery, step)
+    calls = iter([True, False])
+
+    def fail_once(*arguments: object) -> object:
+        if next(calls):
+            raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+        return real(*arguments)
+
+    monkeypatch.setattr(delivery, step, fail_once)
+    assert counts(bench.run()) == (1, 1, 0)
+    assert set(bench.files()) == {f"b.{kind}" for kind in KINDS}
+    monkeypatch.undo()
+    assert counts(bench.run()) == (1, 0, 1)
+
+
+def test_a_manifest_that_cannot_be_written_stops_the_batch_and_loses_nothing(
+    bench: Bench, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    bench.put(a="1", b="2")
+
+    def fail(self: Manifest, record: object) -> None:
+        raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+
+    monkeypatch.setattr(Manifest, "append", fail)
+    with pytest.raises(ExportError, match="No space left"):
+        bench.run()
+    assert not bench.files()
+    monkeypatch.undo()
+    assert counts(bench.run()) == (1, 0, 1)
+    assert len(bench.files()) == 2 * len(KINDS)
+    assert any(isinstance(event, FileSkipped) for event in bench.events)
+
+
+@pytest.mark.parametrize("moment", range(len(KINDS)))
+def test_a_move_that_stops_half_way_is_finished_by_the_next_run(
+    bench: Bench, monkeypatch: pytest.MonkeyPatch, moment: int
+) -> None:
+    bench.put(a="1")
+    real = Path.replace
+    moves = iter(range(100))
+
+    def stop(self: Path, target: Path) -> Path:
+        if next(moves) == moment:
+            raise KeyboardInterrupt
+        return real(self, target)
+
+    monkeypatch.setattr(Path, "replace", stop)
+    with pytest.raises(KeyboardInterrupt):
+        bench.run()
+    monkeypatch.undo()
+    assert counts(bench.run()) == (0, 0, 1)
+    assert set(bench.files()) == {f"a.{kind}" for kind in KINDS}
