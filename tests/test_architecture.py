@@ -29,6 +29,7 @@ LAYER = {
     "versions": 5,
     "job": 7,
     "outcome": 8,
+    "job_arguments": 8,
     "phases": 9,
     "outputs": 9,
     "summary": 10,

@@ -30,6 +30,19 @@ def test_paths_in_a_job_file_start_at_its_folder(tmp_path: Path) -> None:
     assert read_job_toml(tmp_path / "job.toml")["output_dir"] == tmp_path / "made"
 
 
+def test_one_number_stands_for_both_rails_and_for_all_sides() -> None:
+    job = Job(input=Path("x.step"), waves=5, height=[2, 3], seam_allowance=6)
+    assert job.waves == (5.0, 5.0)
+    assert job.height == (2.0, 3.0)
+    assert job.seam_allowance == (6.0, 6.0, 6.0, 6.0)
+
+
+def test_a_profile_file_in_a_job_file_starts_at_its_folder(tmp_path: Path) -> None:
+    (tmp_path / "job.toml").write_text('profile = "our_layers.toml"\n')
+    read = read_job_toml(tmp_path / "job.toml")
+    assert read["profile"] == str(tmp_path / "our_layers.toml")
+
+
 def test_criteria_from_a_job_file_become_a_tuple(tmp_path: Path) -> None:
     (tmp_path / "job.toml").write_text('criteria = ["area"]\n')
     assert make_job(Path("x.step"), None, tmp_path / "job.toml").criteria == ("area",)
@@ -55,6 +68,19 @@ def test_criteria_from_a_job_file_become_a_tuple(tmp_path: Path) -> None:
         ({"name": "a\nb"}, "name"),
         ({"name": "é" * 101}, "name"),
         ({"colour": "red"}, "colour"),
+        ({"waves": 5}, "height"),
+        ({"height": 5}, "waves"),
+        ({"waves": (1, 2, 3), "height": 1}, "waves"),
+        ({"waves": "many", "height": 1}, "waves"),
+        ({"seam_allowance": (1, 2)}, "seam_allowance"),
+        ({"seam_allowance": (1, 2, 3, math.nan)}, "seam_allowance"),
+        ({"grain": 1}, "grain"),
+        ({"notches": -1}, "notches"),
+        ({"notches": 1.5}, "notches"),
+        ({"quantity": 0}, "quantity"),
+        ({"side": "up"}, "side"),
+        ({"dxf_version": "R14"}, "dxf_version"),
+        ({"max_fold_deg": -1}, "max_fold_deg"),
         ({"source_date_epoch": -1}, "source_date_epoch"),
         ({"source_date_epoch": 10**15}, "source_date_epoch"),
     ],

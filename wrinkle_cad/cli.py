@@ -15,9 +15,9 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
-from . import settings
 from .batch_arguments import add_batch_arguments
-from .errors import InputError, WrinkleError
+from .errors import WrinkleError
+from .job_arguments import add_job_arguments, job_keywords
 
 if TYPE_CHECKING:
     from .outcome import JobDone
@@ -93,30 +93,6 @@ def _add_batch(commands: Any) -> None:
     _add_debug(batch)
 
 
-def add_job_arguments(parser: argparse.ArgumentParser) -> None:
-    """Adds the flags that one job and a batch of jobs share."""
-    add = parser.add_argument
-    add("-o", "--output-dir", type=Path, metavar="DIR", help="folder for the outputs (out)")
-    add("--p", metavar="NAME|INDEX", help="directrix P, as inspect prints it")
-    add("--q", metavar="NAME|INDEX", help="directrix Q")
-    add("--upper", metavar="NAME|INDEX", help="the upper surface")
-    add("--unit", choices=("mm", "cm", "m", "inch", "ft"), help="unit of a file that states none")
-    add(
-        "--tolerance",
-        type=float,
-        metavar="MM",
-        help=f"largest distance of a chord from its curve in mm ({settings.TOLERANCE:g})",
-    )
-    add("--max-chord", type=float, metavar="MM", help="longest chord in mm (unlimited)")
-    add("--planarity", type=float, metavar="MM", help="slack of the convexity test in mm (derived)")
-    add("--surface", choices=("cones", "facets"), help=f"kind of faces ({settings.SURFACE})")
-    add("--criteria", type=_criteria, metavar="A,B", help="what to minimise (invalid,bending)")
-    add("--search", choices=("global", "local"), help=f"search ({settings.SEARCH})")
-    add("--energy", choices=("hinge", "paper"), help=f"bending energy ({settings.ENERGY})")
-    add("--step-schema", choices=("AP214", "AP242"), help=f"({settings.STEP_SCHEMA})")
-    add("--rulings", action="store_true", default=None, help="draw the rulings in the pattern")
-
-
 def _add_inspect(commands: Any) -> None:
     inspect = commands.add_parser("inspect", help="list the shapes of a file")
     inspect.set_defaults(command=_inspect)
@@ -147,37 +123,13 @@ class _Version(argparse.Action):
         parser.exit()
 
 
-def _criteria(text: str) -> tuple[str, ...]:
-    return tuple(part.strip() for part in text.split(",") if part.strip())
-
-
-def _epoch() -> int | None:
-    text = os.environ.get("SOURCE_DATE_EPOCH")
-    if text is None or text == "":
-        return None
-    if not text.isdigit():
-        raise InputError(f"SOURCE_DATE_EPOCH - {text!r} - whole seconds since 1970 - correct it")
-    return int(text)
-
-
-def job_keywords(given: argparse.Namespace) -> dict[str, Any]:
-    """The settings of a job among the arguments given; None where a flag was not given."""
-    from dataclasses import fields
-
-    from .job import Job
-
-    names = {field.name for field in fields(Job)} - {"input", "source_date_epoch"}
-    keywords = {name: value for name, value in vars(given).items() if name in names}
-    return {**keywords, "source_date_epoch": _epoch()}
-
-
 def _run(given: argparse.Namespace) -> int:
     from .job import make_job
     from .outcome import JobFailed
     from .screen import progress_on_screen
     from .workflow import run_job
 
-    job = make_job(given.input, job_keywords(given), given.job)
+    job = make_job(given.input, job_keywords(given, os.environ), given.job)
     with progress_on_screen(is_wanted=not given.quiet) as progress:
         outcome = run_job(job, progress=progress)
     if isinstance(outcome, JobFailed):
@@ -192,7 +144,7 @@ def _run(given: argparse.Namespace) -> int:
 
 def job_misses_limits(outcome: JobDone) -> bool:
     """Whether a limit was missed that the job was told to fail by."""
-    return bool(outcome.missed_limits) and getattr(outcome.job, "strict", False)
+    return bool(outcome.missed_limits) and outcome.job.strict
 
 
 def _print_done(outcome: JobDone) -> None:
@@ -217,7 +169,7 @@ def _print_done(outcome: JobDone) -> None:
 def _batch(given: argparse.Namespace) -> int:
     from .batch_screen import run_batch_command
 
-    return run_batch_command(given, job_keywords(given))
+    return run_batch_command(given, job_keywords(given, os.environ))
 
 
 def _inspect(given: argparse.Namespace) -> int:

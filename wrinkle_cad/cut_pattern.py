@@ -59,9 +59,9 @@ class Pattern:
     @property
     def sketch(self) -> Any:
         """The cut lines as a build123d ``Sketch`` on XY."""
-        from .cad.guests import sketch_from_outlines
+        from .cad.guests import sketch_from_outline
 
-        return sketch_from_outlines([piece.cut_line for piece in self.pieces])
+        return sketch_from_outline([piece.cut_line for piece in self.pieces])
 
     def export_dxf(
         self,

@@ -17,14 +17,40 @@ from .errors import JobError
 
 _PATH_FIELDS: Final = ("input", "output_dir", "material")
 _CHOICES: Final[dict[str, tuple[str, ...]]] = {
-    "surface": ("cones", "facets"),
+    "surface": settings.SURFACES,
     "search": ("global", "local"),
     "energy": ("hinge", "paper"),
     "step_schema": ("AP214", "AP242"),
     "unit": ("mm", "cm", "m", "inch", "ft"),
+    "side": ("out", "in", "both"),
+    "dxf_version": ("R12", "R2000", "R2010"),
+    "curves": ("lines", "arcs", "splines"),
+    "surface_side": ("inside", "middle", "outside"),
+    "hand": ("left", "right"),
+    "overlap": ("split", "refuse"),
 }
-_POSITIVE: Final = ("tolerance", "max_chord", "planarity", "waves", "max_fold_deg")
-_NOT_NEGATIVE: Final = ("height", "margin", "max_twist_deg", "max_invalid_percent")
+_POSITIVE: Final = ("tolerance", "max_chord", "planarity", "notch_spacing", "quantity")
+_NOT_NEGATIVE: Final = (
+    "margin",
+    "fade",
+    "ruling_spacing",
+    "thickness",
+    "notches",
+    "max_fold_deg",
+    "max_twist_deg",
+    "max_invalid_percent",
+)
+_VECTORS: Final = {
+    "waves": 2,
+    "height": 2,
+    "phase_deg": 2,
+    "seam_allowance": 4,
+    "lasting_margin": 4,
+    "grain": 3,
+    "stretch": 3,
+}
+_ONE_FOR_ALL: Final = ("waves", "height", "phase_deg", "seam_allowance", "lasting_margin")
+"""Of these one number stands for all of its parts."""
 _NAME_LIMIT: Final = 200
 _EPOCH_LIMIT: Final = 253_402_300_800
 """The year 10000, which no date format of the outputs can hold."""
@@ -66,6 +92,68 @@ class Job:
     """``AP214`` or ``AP242``."""
     rulings: bool = False
     """Whether the pattern shows the rulings as a layer of their own."""
+    waves: tuple[float, float] | None = None
+    """Full waves of a wrinkle along P and Q on the upper; when None, P and Q are the profiles."""
+    height: tuple[float, float] | None = None
+    """How high the waves of P and Q stand over the upper."""
+    phase_deg: tuple[float, float] | None = None
+    """Where in their periods the waves of P and Q start."""
+    side: str = settings.WAVE_SIDE
+    """``out`` of the upper, ``in`` or ``both``."""
+    margin: float | None = None
+    """How far the opening reaches beyond the rails; the waves' height when None."""
+    fade: float = settings.FADE
+    """Share of the rails over which waves and margin grow and die away."""
+    allow_split: bool = False
+    """Whether an opening may cut the upper in two."""
+    profile: str = settings.DXF_PROFILE
+    """Layers of the DXF: ``cutter``, ``aama``, ``astm`` or the path of a TOML file."""
+    dxf_version: str = settings.DXF_VERSION
+    """``R12``, ``R2000`` or ``R2010``."""
+    curves: str = "lines"
+    """What curved cut lines are written as: ``lines``, ``arcs`` or ``splines``."""
+    seam_allowance: tuple[float, float, float, float] = settings.SEAM_ALLOWANCE
+    """Widths on P, Q, the start and the end."""
+    lasting_margin: tuple[float, float, float, float] = settings.SEAM_ALLOWANCE
+    """Widths added to the allowance of the same edge."""
+    notches: int = 0
+    """Pairs of notches on each long seam, at equal distances."""
+    notch_spacing: float | None = None
+    """Distance of the notches instead of their number."""
+    thickness: float | None = None
+    """Of the material; lengths are taken at its neutral layer. The material's own when None."""
+    surface_side: str = "middle"
+    """Which side of the material the surface is: ``inside``, ``middle`` or ``outside``."""
+    hand: str | None = None
+    """``left`` or ``right``: the foot of this strip; its mirrored twin is made as well."""
+    size: str = settings.PIECE_SIZE
+    """Size that is written on the pieces."""
+    quantity: int = 1
+    """How many of each piece are to be cut."""
+    overlap: str = settings.PATTERN_OVERLAP
+    """A flat strip that covers itself: ``split`` or ``refuse``."""
+    grain: tuple[float, float, float] | None = None
+    """Grain direction in space; along the strip when None."""
+    stretch: tuple[float, float, float] | None = None
+    """Stretch direction in space; not drawn when None."""
+    ruling_spacing: float = 0.0
+    """Rulings nearer to each other than this are not drawn."""
+    test_square: bool = False
+    """Whether the DXF has a square of 100 mm to check the scale."""
+    svg: bool = False
+    """Whether the pattern is written as SVG, too."""
+    pdf: bool = False
+    """Whether the pattern is written as PDF, 1:1 tiled on A4, too."""
+    max_fold_deg: float | None = None
+    """Largest fold angle that passes."""
+    max_twist_deg: float | None = None
+    """Largest twist that passes."""
+    max_invalid_percent: float | None = None
+    """Largest share of the rails under invalid bridges that passes."""
+    material: Path | None = None
+    """TOML file of a material: its limits and thickness."""
+    strict: bool = False
+    """Whether a missed limit counts as a failure."""
     source_date_epoch: int | None = None
     """Seconds since 1970 (UTC) that stand as the time in every output; now when None."""
 
@@ -79,6 +167,9 @@ class Job:
             if getattr(self, field, None) is not None:
                 object.__setattr__(self, field, Path(getattr(self, field)))
         object.__setattr__(self, "criteria", tuple(self.criteria))
+        for field, count in _VECTORS.items():
+            value = _vector(field, getattr(self, field), count)
+            object.__setattr__(self, field, value)
         object.__setattr__(self, "name", self.name or _stem_of(self.input))
         _check_name(self.name)
         for field, choices in _CHOICES.items():
@@ -87,6 +178,11 @@ class Job:
                 raise JobError(f"{field} - {value!r} - one of {', '.join(choices)}")
         for field in (*_POSITIVE, *_NOT_NEGATIVE):
             _check_number(field, getattr(self, field, None), may_be_zero=field in _NOT_NEGATIVE)
+        for field in ("notches", "quantity"):
+            if not isinstance(getattr(self, field), int):
+                raise JobError(f"{field} - {getattr(self, field)!r} - a whole number")
+        if (self.waves is None) != (self.height is None):
+            raise JobError("waves and height - one without the other - both design a wrinkle")
         epoch = self.source_date_epoch
         if epoch is not None and not 0 <= epoch < _EPOCH_LIMIT:
             raise JobError(f"source_date_epoch - {epoch} s - 0 to {_EPOCH_LIMIT - 1} - correct it")
@@ -128,7 +224,28 @@ def read_job_toml(path: Path) -> dict[str, Any]:
     for field in _PATH_FIELDS:
         if field in table:
             table[field] = path.parent / str(table[field])
+    if str(table.get("profile", "")).lower().endswith(".toml"):
+        table["profile"] = str(path.parent / str(table["profile"]))
     return table
+
+
+def _vector(field: str, value: Any, count: int) -> tuple[float, ...] | None:
+    """The numbers of a setting that has several, one standing for all where that makes sense."""
+    if value is None:
+        return None
+    if isinstance(value, int | float):
+        value = (value,)
+    if not isinstance(value, list | tuple):
+        raise JobError(f"{field} - {value!r} - {count} numbers")
+    numbers = tuple(value) * count if len(value) == 1 and field in _ONE_FOR_ALL else tuple(value)
+    if len(numbers) != count:
+        raise JobError(f"{field} - {len(numbers)} numbers - {count}")
+    for number in numbers:
+        if isinstance(number, bool) or not isinstance(number, int | float):
+            raise JobError(f"{field} - {number!r} - a number")
+        if not math.isfinite(number):
+            raise JobError(f"{field} - {number} - a finite number")
+    return tuple(float(number) for number in numbers)
 
 
 def _check_known(table: Mapping[str, Any], source: str) -> None:

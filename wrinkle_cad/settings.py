@@ -39,6 +39,9 @@ INFLECTION_SAMPLES: Final = 2
 INFLECTION_SAGITTAS: Final = 2.0
 """Neighbours share a tangent plane if no further from it than this many typical sagittas."""
 
+DOUBLE_INFLECTION_SAGITTAS: Final = 0.5
+"""The same where two changes of bending fall between samples."""
+
 COINCIDENT_SAGITTAS: Final = 0.3
 """Samples this many typical sagittas of the other rail away from it may be of the same curve: a
 chord tolerance is a quarter of a sagitta."""
@@ -188,6 +191,9 @@ STRIP_NAME: Final = "strip"
 
 LISTED_SHAPES: Final = 12
 """Candidates that one message lists at most."""
+
+MESH_SAG_PER_TOLERANCE: Final = 0.5
+"""The kernel's mesher holds its limit along edges; inside, triangles lie up to 1.7 times as far."""
 
 MESH_ANGLE: Final = 0.2
 """rad; how far the normals of neighbouring triangles of a mesh may differ on a curved face."""
