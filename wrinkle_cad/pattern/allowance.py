@@ -117,13 +117,19 @@ def _fan(outward: Floats, turn: float, width: float, tolerance: float) -> Floats
 
 
 def _cleaned(ring: shapely.LinearRing, tolerance: float) -> Floats:
-    """Returns a ring as (k, 2), counter-clockwise, without the short segments of the union."""
-    whole = shapely.Polygon(ring).normalize().exterior.coords[:-1]
-    points = np.array(whole)[::-1]
-    for share in (1.0, 0.1, 0.0):
-        trial = _without_short_segments(points, share * tolerance)
-        if len(trial) >= 3 and shapely.Polygon(trial).is_valid:
-            return trial
+    """Returns a ring as (k, 2), counter-clockwise, without the short segments of the union.
+
+    It is simple as a file has it, rounded; a crack too narrow for that is closed.
+    """
+    whole = shapely.Polygon(ring)
+    closed = whole.buffer(tolerance, join_style="mitre").buffer(-tolerance, join_style="mitre")
+    for region in (whole, closed):
+        points = np.array(region.normalize().exterior.coords[:-1])[::-1]
+        for share in (1.0, 0.1, 0.0):
+            trial = _without_short_segments(points, share * tolerance)
+            rounded = np.round(trial, settings.DXF_DECIMALS)
+            if len(trial) >= 3 and shapely.Polygon(rounded).is_valid:
+                return trial
     return points
 
 
