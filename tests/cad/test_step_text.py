@@ -34,6 +34,12 @@ def test_letters_become_utf_8_whether_they_were_or_not() -> None:
     assert plain_text("Schäfte".encode("latin-1")).decode() == "Schäfte"
 
 
+def test_apostrophes_that_look_like_ends_are_written_another_way() -> None:
+    assert plain_text(b"#1=A('x'')y','z'' ,','',('')) ;") == (
+        rb"#1=A('x\X\27)y','z\X\27 ,','',('')) ;"
+    )
+
+
 def test_semicolons_in_strings_and_comments_end_no_statement() -> None:
     text = b"#1=A('x;''y');/* b; */#2=B(\n'/*',#1);"
     assert [b"".join(found.split()) for found in statements(text)] == [b"#1=A('')", b"#2=B('',#1)"]

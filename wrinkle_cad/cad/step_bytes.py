@@ -29,6 +29,8 @@ _STRUCTURE: Final = re.compile(
 _PLACEMENT: Final = re.compile(rb"#(\d+) = AXIS2_PLACEMENT_3D\(")
 _LAST: Final = re.compile(rb"#(\d+) = ")
 _NUMBER: Final = re.compile(rb"#(\d+)")
+# The kernel takes an apostrophe before one of these for the end of the string, doubled or not.
+_END_LIKE: Final = re.compile(r"'(?=\s*[),])")
 _STRING_LIMIT: Final = 32767
 
 
@@ -57,7 +59,8 @@ def encoded(text: str) -> bytes:
     pieces = [b"'"]
     for run in re.findall(r"[ -~]+|[^ -~]+", shown):
         if run.isascii():
-            pieces.append(run.replace("\\", "\\\\").replace("'", "''").encode())
+            run = _END_LIKE.sub(r"\\X\\27", run.replace("\\", "\\\\"))
+            pieces.append(run.replace("'", "''").encode())
         else:
             wide = any(ord(letter) > 0xFFFF for letter in run)
             digits = run.encode("utf-32-be" if wide else "utf-16-be").hex().upper()

@@ -19,6 +19,8 @@ _HEAD = re.compile(rb"#\s*(\d+)\s*=\s*(.*)", re.DOTALL)
 _END = re.compile(rb"END-ISO-10303-21\s*;")
 _SECTION = re.compile(rb"(?<![\w#])(DATA|ENDSEC)\s*(?:\([^;]*\)\s*)?;")
 _LIST = re.compile(rb"\(([^()]*)\)")
+# Inside of a string, since a letter stands before it: the kernel reads '') and '', as an end.
+_END_LIKE = re.compile(rb"(?<=[^,(\s'/])\'\'(?=\s*[),])")
 _NUMERIC = re.compile(rb"\s*[-+.\d#]")
 _REFERENCE = re.compile(rb"#\s*(\d+)")
 _SPLINE = re.compile(rb"B_SPLINE_(CURVE|SURFACE)_WITH_KNOTS|RATIONAL_B_SPLINE_(CURVE|SURFACE)")
@@ -49,8 +51,10 @@ def plain_text(content: bytes) -> bytes:
     """Returns the bytes with line feeds as the only line ends and every letter in UTF-8.
 
     Files written before editions with Unicode hold Latin-1; those are told by not being UTF-8.
+    Apostrophes that the kernel would take for the end of their string are written another way.
     """
     text = content.replace(b"\r\n", b"\n").replace(b"\r", b"\n")
+    text = _END_LIKE.sub(rb"\\X\\27", text)
     if text.isascii():
         return text
     try:

@@ -32,7 +32,7 @@ from wrinkle_cad.errors import CadError, ExportError
 from .kernel import faces_of, kernel_step
 from .shapes import Part
 from .step_bytes import Header, finished_text, placeholder
-from .xde import new_document, set_name, set_parameter, silence_kernel
+from .xde import new_document, printable, set_name, set_parameter, silence_kernel
 
 try:  # OCP 7.9
     from OCP.TopTools import TopTools_IndexedMapOfShape
@@ -90,6 +90,9 @@ def step_bytes(
         raise CadError("write STEP", f"schema {schema!r} - one of {', '.join(_SCHEMAS)}")
     if not parts:
         raise CadError("write STEP", "no shapes - at least one is needed")
+    for part in parts:
+        if part.shape.IsNull():
+            raise CadError("write STEP", f"part '{printable(part.name)}' is empty - leave it out")
     silence_kernel()
     with kernel_step("write STEP"):
         raw = _kernel_text(_apart([part.shape for part in parts]), _SCHEMAS[schema])
@@ -192,7 +195,8 @@ def stl_bytes(
         # A mesh is stored in the shape, and whoever owns the shape did not ask for one.
         own = BRepBuilderAPI_Copy(shape, True, False).Shape()
         BRepTools.Clean_s(own)
-        BRepMesh_IncrementalMesh(own, tolerance, False, angular_tolerance, False)
+        sag = settings.MESH_SAG_PER_TOLERANCE * tolerance
+        BRepMesh_IncrementalMesh(own, sag, False, angular_tolerance, False)
         writer = StlAPI_Writer()
         writer.ASCIIMode = False
         with tempfile.TemporaryDirectory(prefix="wrinkle-cad-") as folder:
