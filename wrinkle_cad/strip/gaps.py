@@ -3,9 +3,9 @@
 Kinds of gap:
 
 - `inflection`: the bending changes sign there and the sampling cannot show the ruling; no defect.
-- `twist`: the sheet would have to turn along its rulings; what it turns is undone further on.
-- `fan end`: the sheet turns into or out of a fan of rulings (a cone through one sample) or another
-  crease and does not turn back.
+- `twist`: the rails' tangents differ along the rulings, and the surface turns with them.
+- `fan end`: they differ, but the surface does not turn: rulings gather in a fan (a cone through one
+  sample), and the rail through its apex leaves the tangent plane where the fan begins or ends.
 """
 
 from __future__ import annotations
@@ -16,9 +16,10 @@ from typing import Literal
 import numpy as np
 import numpy.typing as npt
 
-from wrinkle_cad.settings import TWIST_PER_FOLD
+from wrinkle_cad.settings import TWIST_PER_DEFECT
 
-from .triangulation import P_STEP, Triangulation
+from .sightlines import BEFORE_P, BEFORE_Q, NEXT_P, NEXT_Q, look_along_path, padded_banks
+from .triangulation import Triangulation
 
 Floats = npt.NDArray[np.float64]
 Bools = npt.NDArray[np.bool_]
@@ -42,9 +43,9 @@ class Gap:
     q_length: float
     """mm of Q that its bridges cover."""
     angle_defect: float
-    """rad; the largest angle by which the tangent planes at both ends of a bridge differ, 0 if all
-    its bridges stand inside a fan. Positive if the plane that follows Q is turned right-handed
-    about the direction from P to Q against the one that follows P."""
+    """rad, in (-pi, pi]; the largest angle from P's tangent to Q's, seen along one of its bridges;
+    positive if right-handed about the direction from P to Q. Turning one rail's
+    tangent by as much closes the gap there."""
     twist: float
     """rad, not negative; the largest twist of its bridges."""
     kind: Kind
@@ -88,10 +89,17 @@ def _shares(triangulation: Triangulation, rail: int) -> Floats:
 
 
 def _defects(triangulation: Triangulation) -> Floats:
-    """Turn of the plane along Q against the plane along P at each bridge, (k,) float64, rad."""
-    before, after = triangulation.steps[:-1], triangulation.steps[1:]
-    sign = np.where(before == P_STEP, 1.0, -1.0) * (before != after)
-    return np.concatenate(([0.0], sign * triangulation.fold, [0.0]))
+    """Angle from the tangent of P to that of Q seen along each bridge, (k,) float64, rad.
+
+    The tangent at a sample is the direction from the one before it to the one after.
+    """
+    p, q = triangulation.p, triangulation.q
+    columns = np.ascontiguousarray(q.T)
+    view = look_along_path(p, padded_banks(p), columns, padded_banks(q), triangulation.bridges)
+    ax, ay = view[NEXT_P : NEXT_P + 2] - view[BEFORE_P : BEFORE_P + 2]
+    bx, by = view[NEXT_Q : NEXT_Q + 2] - view[BEFORE_Q : BEFORE_Q + 2]
+    angle: Floats = np.arctan2(ax * by - ay * bx, ax * bx + ay * by)
+    return angle
 
 
 def _gap(
@@ -100,11 +108,11 @@ def _gap(
     here = slice(first, stop)
     start, end = triangulation.bridges[first], triangulation.bridges[stop - 1]
     twist = float(triangulation.twist[here].max())
-    steepest = float(np.abs(triangulation.fold[first - 1 : stop - 1]).max())
+    worst = float(defect[here][np.abs(defect[here]).argmax()])
     kind: Kind = "fan end"
     if triangulation.inflection[here].all():
         kind = "inflection"
-    elif twist > TWIST_PER_FOLD * steepest:
+    elif twist > TWIST_PER_DEFECT * abs(worst):
         kind = "twist"
     return Gap(
         first=first,
@@ -113,7 +121,7 @@ def _gap(
         end=(int(end[0]), int(end[1])),
         p_length=float(shares[0][here].sum()),
         q_length=float(shares[1][here].sum()),
-        angle_defect=float(defect[here][np.abs(defect[here]).argmax()]),
+        angle_defect=worst,
         twist=twist,
         kind=kind,
     )

@@ -17,6 +17,7 @@ from .path import Path
 
 Floats = npt.NDArray[np.float64]
 Bools = npt.NDArray[np.bool_]
+Indices = npt.NDArray[np.intp]
 
 
 def plane_misfit(view: Floats) -> Floats:
@@ -47,10 +48,12 @@ def plane_misfit(view: Floats) -> Floats:
 def inflection_bridges(path: Path, sagitta: float) -> Bools:
     """Returns which invalid interior bridges stand at a change of bending and are no defect.
 
-    Such a bridge has a valid one bent up before it and a valid one bent down behind it (or the
-    reverse), both at most two samples away, counted on the rail where that is less; and its
-    neighbours share a tangent plane to within what the sampling can tell. Where two changes of
-    bending fall between samples it is a single bridge, bent against its valid neighbours.
+    The neighbours of such a bridge share a tangent plane to within what the sampling can tell, and
+    it has a valid bridge bent up before it and a valid one bent down behind it (or the reverse),
+    both at most two samples away, counted on the rail where that is less. Where two changes of
+    bending fall between samples, a run of invalid bridges is bent against the valid ones on both
+    sides; that is told from a mere twist, which alternates from sample to sample, by a plane that
+    fits more closely and there being at most one more invalid run within two samples.
 
     Args:
         path: the bridges, in order.
@@ -61,31 +64,52 @@ def inflection_bridges(path: Path, sagitta: float) -> Bools:
     """
     invalid = ~path.valid
     invalid[[0, -1]] = False
-    misfit = np.zeros(invalid.size)
-    misfit[invalid] = plane_misfit(path.view[:, invalid])
+    near = _near(path.bridges)
     fold = np.concatenate(([0.0], path.fold, [0.0]))
-    is_change = _changes(path.bridges, path.valid, fold) & (misfit <= INFLECTION_SAGITTAS * sagitta)
-    # The first and the last bridge have no fold, so they contradict no interior one.
-    opposed = (fold[:-1] * fold[1:] < 0.0) & ~(invalid[:-1] & invalid[1:])
-    opposed[[0, -1]] = True
-    against = np.append(False, opposed) & np.append(opposed, False)
-    is_double = against & (misfit <= DOUBLE_INFLECTION_SAGITTAS * sagitta)
-    result: Bools = invalid & (is_change | is_double)
+    misfit = np.zeros(invalid.size)
+    misfit[invalid] = plane_misfit(path.view[:, invalid]) / max(sagitta, np.finfo(float).tiny)
+    is_single = _single_changes(near, path.valid, fold) & (misfit <= INFLECTION_SAGITTAS)
+    is_double = _double_changes(near, invalid, fold) & (misfit <= DOUBLE_INFLECTION_SAGITTAS)
+    result: Bools = invalid & (is_single | is_double)
     return result
 
 
-def _changes(bridges: npt.NDArray[np.int64], valid: Bools, fold: Floats) -> Bools:
-    """Bridges with valid ones bent opposite ways before and behind them, close enough."""
+def _near(bridges: npt.NDArray[np.int64]) -> tuple[Indices, Indices]:
+    """First and one past the last bridge that is close enough to each bridge on either rail."""
     reach = INFLECTION_SAMPLES
     first = np.minimum(*(np.searchsorted(side, side - reach, "left") for side in bridges.T))
     stop = np.maximum(*(np.searchsorted(side, side + reach, "right") for side in bridges.T))
-    here = np.arange(bridges.shape[0])
+    return first, stop
+
+
+def _single_changes(near: tuple[Indices, Indices], valid: Bools, fold: Floats) -> Bools:
+    """Bridges with valid ones bent opposite ways before and behind them."""
+    first, stop = near
+    here = np.arange(valid.size)
     before, behind = [], []
     for sign in (1.0, -1.0):
         count = np.concatenate(([0], np.cumsum(valid & (sign * fold > 0.0))))
         before.append(count[here] > count[first])
         behind.append(count[stop] > count[here + 1])
     result: Bools = (before[0] & behind[1]) | (before[1] & behind[0])
+    return result
+
+
+def _double_changes(near: tuple[Indices, Indices], invalid: Bools, fold: Floats) -> Bools:
+    """Invalid runs that are bent one way, against the bridges on both sides, and nearly alone."""
+    edges = np.flatnonzero(np.diff(invalid)) + 1
+    start, stop = edges[::2], edges[1::2]
+    sign = np.sign(fold)
+    total = np.concatenate(([0.0], np.cumsum(sign)))
+    bent = total[stop] - total[start]
+    is_against = (np.abs(bent) == stop - start) & (sign[start - 1] * bent <= 0.0)
+    is_against &= sign[stop] * bent <= 0.0
+    runs = np.zeros(invalid.size + 1, dtype=np.int64)
+    runs[start + 1] = 1
+    runs = np.cumsum(runs)
+    is_alone = runs[near[1][stop - 1]] - runs[near[0][start]] <= 2
+    result = np.zeros(invalid.size, dtype=np.bool_)
+    result[invalid] = np.repeat(is_against & is_alone, stop - start)
     return result
 
 
