@@ -31,6 +31,7 @@ LAYER = {
     "outcome": 8,
     "job_arguments": 8,
     "phases": 9,
+    "job_parts": 9,
     "outputs": 9,
     "summary": 10,
     "workflow": 11,

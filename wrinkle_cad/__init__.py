@@ -22,6 +22,7 @@ _MODULE_OF: Final = {
     "JobDone": "outcome",
     "JobFailed": "outcome",
     "run_job": "workflow",
+    "run_batch": "batch.executor",
     "Finding": "findings",
     "WrinkleError": "errors",
     "InputError": "errors",

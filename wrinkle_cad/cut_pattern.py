@@ -16,6 +16,7 @@ from .pattern.options import PieceSettings
 from .pattern.piece import PatternPiece
 
 if TYPE_CHECKING:
+    from .pattern.contours import Curves
     from .pattern.dxf import DxfVersion
     from .strip.triangulation import Triangulation
     from .strip.unrolling import Unrolling
@@ -68,7 +69,8 @@ class Pattern:
         path: str | Path,
         *,
         profile: str | Path = settings.DXF_PROFILE,
-        version: DxfVersion = settings.DXF_VERSION,
+        version: DxfVersion | None = None,
+        curves: Curves = "lines",
         timestamp: datetime | None = None,
         test_square: bool = False,
     ) -> tuple[Finding, ...]:
@@ -77,7 +79,8 @@ class Pattern:
         Args:
             path: the file; replaced as a whole.
             profile: ``cutter``, ``aama``, ``astm`` or a TOML file of layers.
-            version: ``R12``, ``R2000`` or ``R2010``.
+            version: ``R12``, ``R2000`` or ``R2010``; when None, R2000, and R12 for aama, astm.
+            curves: what curved cut lines become: ``lines``, ``arcs`` or ``splines``.
             timestamp: the time in the file; the start of 1970 when None.
             test_square: adds a square of 100 mm.
 
@@ -92,6 +95,7 @@ class Pattern:
             self.pieces,
             profile=profile,
             version=version,
+            curves=curves,
             timestamp=timestamp,
             test_square=test_square,
         )

@@ -108,8 +108,8 @@ class Job:
     """Whether an opening may cut the upper in two."""
     profile: str = settings.DXF_PROFILE
     """Layers of the DXF: ``cutter``, ``aama``, ``astm`` or the path of a TOML file."""
-    dxf_version: str = settings.DXF_VERSION
-    """``R12``, ``R2000`` or ``R2010``."""
+    dxf_version: str | None = None
+    """``R12``, ``R2000`` or ``R2010``; when None, R2000, and R12 for aama and astm."""
     curves: str = "lines"
     """What curved cut lines are written as: ``lines``, ``arcs`` or ``splines``."""
     seam_allowance: tuple[float, float, float, float] = settings.SEAM_ALLOWANCE

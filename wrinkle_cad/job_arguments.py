@@ -97,7 +97,7 @@ def _add_file_arguments(add: Callable[..., Any]) -> None:
         metavar="NAME|FILE.toml",
         help=f"layers of the DXF: cutter, aama, astm or your own ({settings.DXF_PROFILE})",
     )
-    add("--dxf-version", choices=("R12", "R2000", "R2010"), help=f"({settings.DXF_VERSION})")
+    add("--dxf-version", choices=("R12", "R2000", "R2010"), help="(R2000; R12 for aama, astm)")
     add("--curves", choices=("lines", "arcs", "splines"), help="curved cut lines (lines)")
     _add_switch(add, "--test-square", "add a square of 100 mm to the DXF")
     _add_switch(add, "--svg", "write the pattern as SVG, too")

@@ -5,7 +5,6 @@ from __future__ import annotations
 import datetime
 import traceback
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
@@ -14,6 +13,7 @@ from .cad.loading import kernel_importable
 from .errors import WrinkleError
 from .findings import Finding
 from .job import Job
+from .job_parts import limits_of, output_kinds, piece_settings_of, write_pattern
 from .outcome import JobDone, JobFailed, Progress
 from .outputs import check_outputs_are_ours, hashes_of, outputs_together
 from .phases import PhaseClock
@@ -26,8 +26,6 @@ if TYPE_CHECKING:
     from .strip_report import StripReport
     from .wrinkle import WrinkleStrip
 
-_KINDS: Final = ("step", "stl", "dxf", "json", "html")
-_HASHED: Final = ("step", "stl", "dxf")
 _PHASES: Final = ("read", "strip", "surface", "pattern", "judge", "write", "page")
 
 
@@ -64,25 +62,28 @@ def _one_line_of(error: Exception, job: Job) -> str:
 
 
 def _run(job: Job, clock: PhaseClock) -> JobDone:
-    from .report.material import Limits
-
     with clock.phase("read"):
         file, chosen = _read(job)
     with clock.phase("strip"):
+        from .cut_pattern import pattern_of_strips
+
+        limits = limits_of(job)
+        chosen_pieces = piece_settings_of(job, limits)
         strips = _make_strips(job, chosen)
     with clock.phase("surface"):
         for strip in strips:
             strip.topods_shell()
     with clock.phase("pattern"):
-        pattern = _pattern_of(job, strips)
+        pattern = pattern_of_strips(strips, chosen_pieces)
     with clock.phase("judge"):
         noticed = [finding for strip in strips for finding in findings_on(strip, strip.report)]
         noticed += pattern.findings
-        summary = summary_of(job, file, chosen, [s.report for s in strips], noticed, Limits())
+        summary = summary_of(job, file, chosen, [s.report for s in strips], noticed, limits)
     outputs = _write(job, clock, strips, pattern, summary)
     return JobDone(
         job=job,
         outputs=outputs,
+        missed_limits=tuple(summary["verdict"]["missed"]),
         summary=summary,
         findings=tuple(Finding(**entry) for entry in summary["findings"]),
         seconds=clock.seconds,
@@ -93,7 +94,7 @@ def _read(job: Job) -> tuple[CadFile, Chosen]:
     with kernel_importable():
         from .cad.choose import choose_inputs
         from .cad.read import read_cad
-    check_outputs_are_ours(job, _KINDS)
+    check_outputs_are_ours(job, output_kinds(job))
     file = read_cad(job.input, unit=job.unit)
     return file, choose_inputs(file, p=job.p, q=job.q, upper=job.upper)
 
@@ -118,14 +119,6 @@ def _make_strips(job: Job, chosen: Chosen) -> list[WrinkleStrip]:
     ]
 
 
-def _pattern_of(job: Job, strips: Sequence[WrinkleStrip]) -> Pattern:
-    from .cut_pattern import pattern_of_strips
-    from .pattern.options import PieceSettings
-
-    chosen = PieceSettings(rulings=job.rulings, tolerance=job.tolerance)
-    return pattern_of_strips(strips, chosen)
-
-
 def findings_on(strip: WrinkleStrip, report: StripReport) -> Iterator[Finding]:
     """What the user should know about a strip."""
     yield from strip.findings
@@ -148,18 +141,20 @@ def _write(
     pattern: Pattern,
     summary: dict[str, Any],
 ) -> tuple[Path, ...]:
-    with outputs_together(job, _KINDS) as paths:
+    kinds = output_kinds(job)
+    with outputs_together(job, kinds) as paths:
         with clock.phase("write"):
             _write_shapes(job, strips, paths)
-            changed = pattern.export_dxf(paths["dxf"], timestamp=timestamp_of(job))
-            summary["findings"] += [asdict(finding) for finding in changed]
-            summary["outputs"] = hashes_of({kind: paths[kind] for kind in _HASHED})
+            changed = write_pattern(job, pattern, paths, timestamp_of(job))
+            summary["findings"] += changed
+            hashed = [kind for kind in kinds if kind not in ("json", "html")]
+            summary["outputs"] = hashes_of({kind: paths[kind] for kind in hashed})
         with clock.phase("page"):
             page = _page(summary, strips, pattern)
             paths["html"].write_text(page, encoding="utf-8")
         summary["seconds"] = {phase: round(took, 3) for phase, took in clock.seconds.items()}
         paths["json"].write_text(to_json(summary), encoding="utf-8")
-    return tuple(job.output_dir / f"{job.name}.{kind}" for kind in _KINDS)
+    return tuple(job.output_dir / f"{job.name}.{kind}" for kind in kinds)
 
 
 def _write_shapes(job: Job, strips: Sequence[WrinkleStrip], paths: Mapping[str, Path]) -> None:

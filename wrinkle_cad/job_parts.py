@@ -1,0 +1,114 @@
+"""What a job's flat settings mean to the parts of the package that do the work."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import asdict
+from datetime import datetime
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, cast
+
+from .findings import Finding
+from .job import Job
+
+if TYPE_CHECKING:
+    from .cut_pattern import Pattern
+    from .pattern.contours import Curves
+    from .pattern.dxf import DxfVersion
+    from .pattern.options import PieceSettings
+    from .report.material import Limits
+
+
+def output_kinds(job: Job) -> tuple[str, ...]:
+    """The endings of the files that the job writes, in the order in which they are listed."""
+    extra = tuple(kind for kind in ("svg", "pdf") if getattr(job, kind))
+    return ("step", "stl", "dxf", "json", "html", *extra)
+
+
+def limits_of(job: Job) -> Limits:
+    """What the job's strips are judged by.
+
+    Raises:
+        InputError: the material's file cannot be used.
+    """
+    from .report.material import Limits, read_material
+
+    limits = Limits(
+        max_fold_deg=job.max_fold_deg,
+        max_twist_deg=job.max_twist_deg,
+        max_invalid_percent=job.max_invalid_percent,
+    )
+    return limits if job.material is None else read_material(job.material, limits)
+
+
+def piece_settings_of(job: Job, limits: Limits) -> PieceSettings:
+    """How the job's pattern pieces are made.
+
+    Args:
+        job: the settings.
+        limits: with the material's name and thickness.
+
+    Raises:
+        InputError: a setting does not fit a piece.
+    """
+    from .pattern.options import NotchRule, PieceSettings
+
+    notches = NotchRule(count=job.notches, spacing=job.notch_spacing)
+    options: dict[str, Any] = {
+        name: getattr(job, name)
+        for name in (
+            "tolerance",
+            "seam_allowance",
+            "lasting_margin",
+            "surface_side",
+            "hand",
+            "size",
+            "quantity",
+            "overlap",
+            "stretch",
+            "rulings",
+            "ruling_spacing",
+        )
+    }
+    return PieceSettings(
+        **options,
+        notches_p=notches,
+        notches_q=notches,
+        thickness=limits.thickness_mm if job.thickness is None else job.thickness,
+        material=limits.material,
+        grain="along" if job.grain is None else job.grain,
+    )
+
+
+def write_pattern(
+    job: Job, pattern: Pattern, paths: Mapping[str, Path], timestamp: datetime
+) -> list[dict[str, str]]:
+    """Writes the pattern in every format that the job asks for.
+
+    Args:
+        job: the settings.
+        pattern: what to write.
+        paths: by kind, "dxf", "svg" and "pdf"; those missing are not written.
+        timestamp: the time in the files.
+
+    Returns:
+        What had to be changed to write them, each finding once, as plain values.
+    """
+    changed: dict[Finding, None] = {}
+    changed.update(
+        dict.fromkeys(
+            pattern.export_dxf(
+                paths["dxf"],
+                profile=job.profile,
+                version=cast("DxfVersion | None", job.dxf_version),
+                curves=cast("Curves", job.curves),
+                timestamp=timestamp,
+                test_square=job.test_square,
+            )
+        )
+    )
+    if "svg" in paths:
+        pattern.export_svg(paths["svg"])
+    if "pdf" in paths:
+        pattern.export_pdf(paths["pdf"], timestamp=timestamp)
+    return [asdict(finding) for finding in changed]
