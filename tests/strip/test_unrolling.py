@@ -11,7 +11,7 @@ from scipy.interpolate import BSpline
 
 from wrinkle_cad.errors import InputError
 from wrinkle_cad.strip.sampling import Samples, sample_curve
-from wrinkle_cad.strip.triangulation import P_STEP, Triangulation, triangulate
+from wrinkle_cad.strip.triangulation import P_STEP, Triangulation, measured, triangulate
 from wrinkle_cad.strip.unrolling import Unrolling, unroll, unroll_cones
 
 FloatArray = NDArray[np.float64]
@@ -226,16 +226,30 @@ def test_facets_converge_to_the_closed_form_with_the_square_of_the_spacing(strip
     assert errors[1] / errors[2] >= 3.5
 
 
-def test_one_cone_with_its_apex_on_the_cones_own_apex_is_exact() -> None:
+def test_a_cone_about_its_own_apex_is_exact() -> None:
     p_at, flat_p = on_cone(lambda t: 60 + 3 * np.sin(2 * t))
-    parameters = np.linspace(0, 2, 5)
-    p_samples = Samples(parameters, p_at(parameters))
-    q_at: Curve = lambda t: np.zeros((len(t), 3)) + np.outer(t, [0, 0, -1e-3])  # noqa: E731
-    q_samples = Samples(np.array([0.0, 1.0]), q_at(np.array([0.0, 1.0])))
-    triangulation = triangulate(p_samples.points, q_samples.points)
-    assert np.array_equal(triangulation.steps[:-1], np.zeros(4)) or triangulation.steps[0] == 1
-    flat = unroll_cones(triangulation, p_samples, q_samples, p_at, q_at, tolerance=1e-3)
-    assert misfit(flat.p, flat_p(parameters)) < 2e-3
+
+    def q_at(t: FloatArray) -> FloatArray:
+        return np.outer(1 - t, [0.0, 0.0, -30.0])
+
+    p_ends, q_ends = np.linspace(0, 2, 5), np.array([0.0, 1.0])
+    p_samples, q_samples = Samples(p_ends, p_at(p_ends)), Samples(q_ends, q_at(q_ends))
+    triangulation = measured(
+        p_samples.points,
+        q_samples.points,
+        np.array([1, 0, 0, 0, 0], dtype=np.int8),
+        planarity=1e-6,
+        criteria=("length",),
+        search="global",
+        energy="hinge",
+    )
+    flat = unroll_cones(triangulation, p_samples, q_samples, p_at, q_at, tolerance=1e-4)
+    assert misfit(flat.p, flat_p(p_ends)) < 1e-10
+    offset = flat.p_line - flat.q[1]
+    start = np.arctan2(offset[0, 1], offset[0, 0])
+    t = np.unwrap(np.arctan2(offset[:, 1], offset[:, 0]) - start) / np.sin(0.5)
+    assert np.hypot(*offset.T) == pytest.approx(60 + 3 * np.sin(2 * t), abs=1e-9)
+    assert len(t) > 50
 
 
 def test_the_polar_angle_is_the_integral_by_arc_length() -> None:
@@ -315,8 +329,6 @@ def test_rigid_motion_and_scale_do_nothing_else_to_the_plane(size: float) -> Non
 
 def swapped(sampling: Sampled) -> Sampled:
     """The very same triangles, with P and Q in each other's place."""
-    from wrinkle_cad.strip.triangulation import measured
-
     old = sampling.triangulation
     new = measured(
         old.q.copy(),
@@ -332,8 +344,6 @@ def swapped(sampling: Sampled) -> Sampled:
 
 def turned_round(sampling: Sampled, end: float) -> Sampled:
     """The very same triangles, read from the other end."""
-    from wrinkle_cad.strip.triangulation import measured
-
     old = sampling.triangulation
     new = measured(
         old.p[::-1].copy(),
@@ -391,6 +401,35 @@ def test_rails_that_meet_at_both_ends_have_bridges_of_no_length() -> None:
     assert np.linalg.norm(flat.p[-1] - flat.q[-1]) < 1e-12
     assert flat.p[-1, 0] ** 2 + flat.p[-1, 1] ** 2 == pytest.approx((20 * np.pi) ** 2, rel=1e-3)
     assert np.all(np.isfinite(flat.p_line))
+
+
+def test_rails_that_touch_on_the_way_and_points_that_repeat_keep_every_length() -> None:
+    t = np.linspace(0, 3, 31)
+    wave = 3 * np.abs(np.sin(t * np.pi / 1.5))
+    p = np.stack((10 * t, -wave, 0 * t), axis=1)
+    q = np.stack((10 * t, wave, t), axis=1)
+    q[[0, 15, 30]] = p[[0, 15, 30]]
+    for rail in (p, np.insert(p, 7, p[7], axis=0)):
+        triangulation = triangulate(rail, q)
+        flat = unroll(triangulation)
+        corners = np.concatenate((triangulation.p, triangulation.q))[triangulation.triangles]
+        assert sides(flat_of(triangulation, flat)) == pytest.approx(sides(corners), abs=1e-13)
+        assert not flat.overlaps
+
+
+@pytest.mark.parametrize("seed", range(40))
+def test_random_strips_keep_every_length(seed: int) -> None:
+    generator = np.random.default_rng(seed)
+    m, n = generator.integers(2, 9, 2)
+    p, q = generator.normal(size=(m, 3)), generator.normal(size=(n, 3))
+    if seed % 3 == 0:
+        q[0] = p[0]
+    if seed % 5 == 0:
+        q[-1] = p[-1]
+    triangulation = triangulate(p, q)
+    corners = np.concatenate((p, q))[triangulation.triangles]
+    found = sides(flat_of(triangulation, unroll(triangulation)))
+    assert found == pytest.approx(sides(corners), rel=1e-12, abs=1e-14)
 
 
 def test_a_planar_strip_stays_as_it_is() -> None:

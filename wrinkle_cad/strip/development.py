@@ -29,8 +29,8 @@ ROUND_OFF: Final = 4096 * np.finfo(np.float64).eps
 FIRST_DEPTH: Final = 2
 """Every cell is cut in four first, so that an S-bend does not pass for a straight line."""
 DEEPEST: Final = 44
-BULGE_SHARE: Final = 0.25
-THINNING_SHARE: Final = 0.5
+BULGE_SHARE: Final = 0.1
+THINNING_SHARE: Final = 0.85
 """Shares of the tolerance: what a panel may bulge, and what leaving out points may add."""
 
 
@@ -277,30 +277,45 @@ def place_chain(
 
 @compiled
 def thinned(points: FloatArray, segment: IndexArray, slack: float) -> NDArray[np.bool_]:
-    """Which points of a flat polyline stay; the last one of each segment always does.
+    """Which points of a flat polyline stay (Douglas and Peucker, doi:10.3138/FM57-6770-U75U-7727).
 
     Args:
         points: (l + 1, 2) float64, mm: polyline; its first point belongs to no segment.
-        segment: (l,) int64: the segment of each further point.
+        segment: (l,) int64: the segment of each further point; the last one of each always stays.
         slack: mm; how far a point that is left out may lie from the line that replaces it.
     """
     keep = np.zeros(len(points), dtype=np.bool_)
     keep[0] = True
-    last = 0
-    for k in range(1, len(points)):
-        is_end = k == len(segment) or segment[k] != segment[k - 1]
-        if not is_end:
-            ux, uy = points[k + 1, 0] - points[last, 0], points[k + 1, 1] - points[last, 1]
-            square = ux * ux + uy * uy
-            for i in range(last + 1, k + 1):
-                vx, vy = points[i, 0] - points[last, 0], points[i, 1] - points[last, 1]
-                share = 0.0
-                if square > 0.0:
-                    share = min(1.0, max(0.0, (ux * vx + uy * vy) / square))
-                if np.hypot(vx - share * ux, vy - share * uy) > slack:
-                    is_end = True
-                    break
-        if is_end:
-            keep[k] = True
-            last = k
+    ends = np.empty(len(points), dtype=np.int64)
+    start = 0
+    for k in range(len(segment)):
+        if k + 1 < len(segment) and segment[k + 1] == segment[k]:
+            continue
+        top = 0
+        ends[0] = k + 1
+        while top >= 0:
+            end = ends[top]
+            gap, farthest = _farthest_between(points, start, end)
+            if gap > slack:
+                top += 1
+                ends[top] = farthest
+            else:
+                keep[end] = True
+                start = end
+                top -= 1
     return keep
+
+
+@compiled
+def _farthest_between(points: FloatArray, start: int, end: int) -> tuple[float, int]:
+    """Largest distance of the points between two others from the segment that joins these."""
+    ux, uy = points[end, 0] - points[start, 0], points[end, 1] - points[start, 1]
+    square = ux * ux + uy * uy
+    gap, farthest = 0.0, start
+    for i in range(start + 1, end):
+        vx, vy = points[i, 0] - points[start, 0], points[i, 1] - points[start, 1]
+        share = 0.0 if square == 0.0 else min(1.0, max(0.0, (ux * vx + uy * vy) / square))
+        distance = np.hypot(vx - share * ux, vy - share * uy)
+        if distance > gap:
+            gap, farthest = distance, i
+    return gap, farthest
