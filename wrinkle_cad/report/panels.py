@@ -117,7 +117,7 @@ def _space_legend() -> Element:
         "span",
         node("span", class_="what"),
         "0°",
-        node("i", class_="ramp"),
+        node("i", node("span", class_="quarter"), class_="ramp"),
         node("span", class_="high"),
         data_for="measure",
         hidden=True,

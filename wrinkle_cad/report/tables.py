@@ -101,7 +101,7 @@ def cell(*content: Child, right: bool = False, kind: str = "") -> Element:
     Args:
         content: what stands in it.
         right: whether it holds a number.
-        kind: ``name`` (any length), ``word`` (never broken), ``text`` (sentences), ``key``.
+        kind: ``name`` (any length), ``word`` (never broken), ``text`` (sentences), ``field``.
     """
     return node("td", *content, **({"class_": kind} if kind else _number_class(right)))
 
@@ -188,7 +188,6 @@ def _gaps_card(numbers: Numbers) -> Element | None:
         ("Along Q", True),
         ("Angle defect", True),
         ("Twist", True),
-        ("What to change", False),
     )
     rows = [
         _gap_row(numbers, at, number, gap)
@@ -217,7 +216,6 @@ def _gap_row(numbers: Numbers, at: int, number: int, gap: Mapping[str, Any]) -> 
         cell(numbers.show(f"{path}/q_length_mm", "mm", 2), right=True),
         cell(numbers.show(f"{path}/angle_defect_deg", "°", 2), right=True),
         cell(numbers.show(f"{path}/twist_deg", "°", 2), right=True),
-        cell(gap["advice"], kind="text"),
         data_gap_strip=str(at),
         data_first=str(gap["first_bridge"]),
         data_last=str(gap["last_bridge"]),
@@ -266,7 +264,7 @@ def _pairs_card(
             continue
         is_number = isinstance(value, int | float) and not isinstance(value, bool)
         shown = numbers.show(f"{path}/{key}", unit, digits) if is_number else _words(value)
-        rows.append(node("tr", cell(key.replace("_", " "), kind="key"), cell(shown, kind="name")))
+        rows.append(node("tr", cell(key.replace("_", " "), kind="field"), cell(shown, kind="name")))
     return _card(title, table((("", False), ("", False)), rows))
 
 

@@ -88,8 +88,15 @@ const Report = (() => {
     redraws.forEach((redraw) => redraw());
   }
   matchMedia("(prefers-color-scheme: dark)").addEventListener("change", redrawAll);
-  addEventListener("beforeprint", () => { document.documentElement.dataset.theme = "light"; redrawAll(); });
-  addEventListener("afterprint", () => { delete document.documentElement.dataset.theme; redrawAll(); });
+  addEventListener("beforeprint", () => {
+    Object.assign(document.documentElement.dataset, { theme: "light", printing: "" });
+    redrawAll();
+  });
+  addEventListener("afterprint", () => {
+    delete document.documentElement.dataset.theme;
+    delete document.documentElement.dataset.printing;
+    redrawAll();
+  });
 
   /* A canvas that follows its size; draw(context, width, height) works in CSS pixels. */
   function surface(canvas, draw) {
@@ -115,8 +122,9 @@ const Report = (() => {
     return request;
   }
 
-  /* Zoom and pan over a canvas: wheel once it has the focus (or with Ctrl), drag, pinch, buttons. */
-  function zoomable(canvas, limit, changed) {
+  /* Zoom and pan over a canvas: wheel once it has the focus (or with Ctrl), drag, pinch, buttons;
+     these zoom about the point that anchor() gives. */
+  function zoomable(canvas, limit, changed, anchor = () => [canvas.clientWidth / 2, canvas.clientHeight / 2]) {
     const view = { scale: 1, x: 0, y: 0 };
     const pointers = new Map();
     let spread = 0;
@@ -135,7 +143,6 @@ const Report = (() => {
       clamp();
     }
     function reset() { view.scale = 1; view.x = 0; view.y = 0; clamp(); }
-    const center = () => [canvas.clientWidth / 2, canvas.clientHeight / 2];
     canvas.addEventListener("wheel", (event) => {
       if (!event.ctrlKey && document.activeElement !== canvas) return;
       event.preventDefault();
@@ -167,15 +174,15 @@ const Report = (() => {
     }));
     canvas.tabIndex = 0;
     canvas.addEventListener("keydown", (event) => {
-      if (event.key === "+") zoom(1.5, ...center());
-      else if (event.key === "-") zoom(1 / 1.5, ...center());
+      if (event.key === "+") zoom(1.5, ...anchor());
+      else if (event.key === "-") zoom(1 / 1.5, ...anchor());
       else if (event.key === "0") reset();
     });
     const tools = canvas.closest(".card").querySelector(".zoom");
     if (tools) {
       const [into, out, whole] = tools.querySelectorAll("button");
-      into.addEventListener("click", () => zoom(1.6, ...center()));
-      out.addEventListener("click", () => zoom(1 / 1.6, ...center()));
+      into.addEventListener("click", () => zoom(1.6, ...anchor()));
+      out.addEventListener("click", () => zoom(1 / 1.6, ...anchor()));
       whole.addEventListener("click", reset);
     }
     return view;

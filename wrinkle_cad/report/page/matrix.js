@@ -6,7 +6,7 @@ Report.matrix = (strip, canvas) => {
   const pictures = new Map();
   const limit = Math.max(4, Math.max(strip.m, strip.n) / 12);
   const request = Report.surface(canvas, draw);
-  const view = Report.zoomable(canvas, limit, request);
+  const view = Report.zoomable(canvas, limit, request, anchor);
   let box = { width: 1, height: 1 };
 
   function picture(key, data) {
@@ -21,6 +21,11 @@ Report.matrix = (strip, canvas) => {
   }
   const x = (j) => view.x + view.scale * (margin.left + (j / strip.n) * (box.width - margin.left - margin.right));
   const y = (i) => view.y + view.scale * (box.height - margin.bottom - (i / strip.m) * (box.height - margin.top - margin.bottom));
+  const where = (k) => [x(strip.chosen.q[k] + 0.5), y(strip.chosen.p[k] + 0.5)];
+  /* The bridge of the path that is nearest to the middle of the view. */
+  function anchor() {
+    return where(Math.max(0, Report.nearest(strip.chosen.count, where, box.width / 2, box.height / 2, Infinity)));
+  }
   const cell = () => Math.min(Math.abs(x(1) - x(0)), Math.abs(y(1) - y(0)));
 
   function drawCells(context) {
@@ -154,7 +159,6 @@ Report.matrix = (strip, canvas) => {
   }
 
   canvas.addEventListener("pointermove", (event) => {
-    const where = (k) => [x(strip.chosen.q[k] + 0.5), y(strip.chosen.p[k] + 0.5)];
     const k = Report.nearest(strip.chosen.count, where, event.offsetX, event.offsetY, 80);
     Report.select(k < 0 ? null : strip, k);
   });

@@ -80,6 +80,8 @@ Report.space = (canvas, panel) => {
     return RAMP[from].clone().lerp(RAMP[from + 1], at - from);
   }
   const measure = (strip, k) => degrees(Math.abs(colorBy === "twist" ? strip.twist[k] : foldAt(strip.chosen, k)));
+  /* Of a bridge and its neighbours: single bridges alternate between flat and folded ones. */
+  const around = (strip, k) => Math.max(measure(strip, Math.max(0, k - 1)), measure(strip, k), measure(strip, Math.min(strip.chosen.count - 1, k + 1)));
   function highest() {
     let high = 0;
     for (const strip of strips) for (let k = 1; k < strip.chosen.count - 1; k += 1) high = Math.max(high, measure(strip, k));
@@ -88,12 +90,13 @@ Report.space = (canvas, panel) => {
   function paint() {
     const themed = Object.fromEntries(["valid", "inflection", "invalid", "strip", "band", "ink", "body"].map((name) => [name, new THREE.Color(color(name))]));
     const high = colorBy === "validity" ? 0 : highest();
+    const shade = (value) => ramp(high ? Math.sqrt(value / high) : 0);
     const lineColor = (strip, k) => {
-      if (colorBy !== "validity") return ramp(high ? measure(strip, k) / high : 0);
+      if (colorBy !== "validity") return shade(around(strip, k));
       return themed[stateOf(strip, k)];
     };
     const faceColor = (strip, k) => {
-      if (colorBy !== "validity") return ramp(high ? measure(strip, k) / high : 0);
+      if (colorBy !== "validity") return shade(around(strip, k));
       const state = k === 0 || k === strip.chosen.count - 1 ? "valid" : stateOf(strip, k);
       return state === "valid" ? themed[strip.role === "band" ? "band" : "strip"] : themed[state];
     };
@@ -112,7 +115,7 @@ Report.space = (canvas, panel) => {
         lines.setXYZ(2 * k + 1, tone.r, tone.g, tone.b);
       }
       faces.needsUpdate = lines.needsUpdate = true;
-      item.bridges.material.opacity = colorBy === "validity" ? 0.75 : 1;
+      item.bridges.material.opacity = Math.min(0.75, 400 / strip.chosen.count);
       item.edges.material.color = themed.ink;
     }
     if (solid) solid.material.color = packed.body.color ? new THREE.Color(...packed.body.color) : themed.body;
@@ -124,6 +127,7 @@ Report.space = (canvas, panel) => {
     const box = panel.querySelector(".legend");
     box.querySelectorAll("[data-for]").forEach((part) => { part.hidden = part.dataset.for !== (colorBy === "validity" ? "validity" : "measure"); });
     box.querySelector(".high").textContent = high.toFixed(high < 1 ? 3 : 1) + "°";
+    box.querySelector(".quarter").textContent = (high / 4).toFixed(high < 4 ? 3 : 1) + "°";
     box.querySelector(".what").textContent = colorBy === "twist" ? "Twist along a bridge" : "Fold at a bridge";
   }
   function frame() {
