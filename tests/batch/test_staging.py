@@ -71,7 +71,7 @@ def test_leftovers_are_found_in_every_folder_and_only_ours(tmp_path: Path) -> No
 def test_a_name_that_a_folder_has_keeps_the_committed_files(tmp_path: Path) -> None:
     (tmp_path / "a.step").mkdir()
     ready = commit_staging(stage(tmp_path), "record")
-    with pytest.raises(OSError, match="a.step"):
+    with pytest.raises(OSError, match="step"):
         move_into_place(ready)
     assert (ready / "a.step").read_text() == "step"
 

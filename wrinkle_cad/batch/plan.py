@@ -82,7 +82,7 @@ def _plan_one(
     folder = safe_folder(source.folder)
     target = output_dir / folder
     default_name = fill(mask or settings.BATCH_NAME_MASK)
-    refusal = ""
+    refusal = _unreadable_name(source)
     try:
         own = _own_settings(source, stem)
         if mask is None and "name" in own:
@@ -90,7 +90,7 @@ def _plan_one(
         merged = {**own, **{key: value for key, value in keywords.items() if value is not None}}
         job = make_job(source.path, {**merged, "name": default_name, "output_dir": target})
     except JobError as error:
-        refusal = str(error)
+        refusal = refusal or str(error)
         job = Job(input=source.path, name=default_name, output_dir=target)
     if not refusal and not target.resolve().is_relative_to(output_dir.resolve()):
         refusal = (
@@ -99,6 +99,18 @@ def _plan_one(
         )
     key = (folder / default_name).as_posix()
     return PlannedJob(source=source, key=key, job=job, refusal=refusal)
+
+
+def _unreadable_name(source: Source) -> str:
+    """Why outputs could not mention the input, or nothing when they can."""
+    try:
+        str(source.path).encode("utf-8")
+    except UnicodeEncodeError:
+        return (
+            f"input {source.label} - bytes in its path are not UTF-8 - outputs name their input -"
+            " rename it"
+        )
+    return ""
 
 
 def _own_settings(source: Source, stem: str) -> dict[str, Any]:

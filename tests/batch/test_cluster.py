@@ -1,0 +1,110 @@
+"""A batch on an existing Dask cluster: two worker processes on the loopback address."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+
+import dask
+import pytest
+from distributed import LocalCluster
+
+from tests.batch.conftest import Bench
+from tests.batch.stand_ins import KINDS, job_by_content
+from wrinkle_cad.batch.cluster import cluster_executor
+from wrinkle_cad.batch.conversion import ConversionOptions, convert
+from wrinkle_cad.batch.events import BatchSummary, FileFinished
+from wrinkle_cad.batch.executor import make_crew
+from wrinkle_cad.batch.inputs import find_sources
+from wrinkle_cad.batch.plan import plan_batch
+from wrinkle_cad.errors import InputError
+
+
+@pytest.fixture(scope="module")
+def scheduler() -> Iterator[str]:
+    """The address of a cluster that gives a task up with its first worker."""
+    with (
+        dask.config.set({"distributed.scheduler.allowed-failures": 0}),
+        LocalCluster(
+            n_workers=2, threads_per_worker=1, host="127.0.0.1", dashboard_address=None
+        ) as cluster,
+    ):
+        yield cluster.scheduler_address
+
+
+def run(bench: Bench, scheduler: str, *, ship_bytes: bool) -> BatchSummary:
+    bench.events = []
+    planned = plan_batch(find_sources([str(bench.inputs)], bench.outputs).files, bench.outputs)
+    options = ConversionOptions(job_function=job_by_content, ship_bytes=ship_bytes)
+    with cluster_executor(scheduler) as (executor, in_flight):
+        assert in_flight == 4
+        crew = make_crew(
+            executor=executor, workers=None, timeout=None, memory=None, in_flight=in_flight
+        )
+        return convert(planned, bench.outputs, crew, bench.events.append, options)
+
+
+@pytest.mark.parametrize("ship_bytes", [False, True])
+def test_a_cluster_does_a_batch_and_resumes_it(
+    bench: Bench, scheduler: str, ship_bytes: bool
+) -> None:
+    bench.put(**{f"f{number}": f"content {number}" for number in range(8)})
+    bench.put(bad="fail@read", bug="raise@write", **{"x/deep": "1"})
+    summary = run(bench, scheduler, ship_bytes=ship_bytes)
+    assert (summary.done, summary.failed) == (9, 2)
+    names = {f"f{number}.{kind}" for number in range(8) for kind in KINDS}
+    assert set(bench.files()) == names | {f"x/deep.{kind}" for kind in KINDS}
+    assert run(bench, scheduler, ship_bytes=not ship_bytes).skipped == 9
+
+
+def test_bytes_that_travel_give_the_same_files(
+    bench: Bench, scheduler: str, tmp_path: Path
+) -> None:
+    bench.put(a="1", b="2")
+    run(bench, scheduler, ship_bytes=True)
+    shipped = bench.files()
+    bench.outputs = tmp_path / "other"
+    run(bench, scheduler, ship_bytes=False)
+    assert bench.files() == shipped
+
+
+def test_a_worker_of_the_cluster_that_is_killed_costs_the_file_that_it_had(
+    bench: Bench, scheduler: str
+) -> None:
+    bench.put(a="1", b="SIGKILL@write", c="3")
+    summary = run(bench, scheduler, ship_bytes=False)
+    failed = [
+        event.record
+        for event in bench.events
+        if isinstance(event, FileFinished) and not event.record.is_done
+    ]
+    assert "WorkerKilled" in {record.error for record in failed}
+    assert "b.step" in {record.input for record in failed}
+    assert summary.done + summary.failed == 3
+
+
+def test_a_scheduler_that_does_not_answer_is_told_in_one_line(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr("wrinkle_cad.batch.cluster._CONNECT_S", 1)
+    with (
+        pytest.raises(InputError, match="--scheduler tcp://127.0.0.1:9"),
+        cluster_executor("tcp://127.0.0.1:9"),
+    ):
+        pass
+
+
+def test_an_address_that_is_none_is_told_in_one_line() -> None:
+    with pytest.raises(InputError, match="--scheduler"), cluster_executor("no such: address"):
+        pass
+
+
+def test_a_missing_extra_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
+    import sys
+
+    monkeypatch.setitem(sys.modules, "distributed", None)
+    with (
+        pytest.raises(InputError, match=r"install wrinkle-cad\[cluster\]"),
+        cluster_executor("tcp://127.0.0.1:9"),
+    ):
+        pass
