@@ -149,10 +149,22 @@ def unroll_cones(
     is_p = strip.is_p
     flat_p = _developed(p_samples, p_at, strip.apex[is_p], tolerance)
     flat_q = _developed(q_samples, q_at, strip.apex[~is_p], tolerance)
+    return _cones_in_plane(triangulation.steps, strip, flat_p, flat_q, tolerance)
+
+
+def _cones_in_plane(
+    steps: NDArray[np.int8],
+    strip: _Chain,
+    flat_p: DevelopedRail,
+    flat_q: DevelopedRail,
+    tolerance: float,
+) -> Unrolling:
+    """Puts the developed cones of both rails side by side."""
+    is_p = strip.is_p
     angles = np.empty(len(is_p))
     angles[is_p] = flat_p.angle[_last_of_segments(flat_p)]
     angles[~is_p] = flat_q.angle[_last_of_segments(flat_q)]
-    p, q, p_from, q_from = place_chain(triangulation.steps, angles, strip.radii, strip.start)
+    p, q, p_from, q_from = place_chain(steps, angles, strip.radii, strip.start)
     i, j = strip.bridges.T
     p_line, p_arc, p_index = _line(p, q[j[is_p]], p_from, flat_p, tolerance)
     q_line, q_arc, q_index = _line(q, p[i[~is_p]], -q_from, flat_q, tolerance, turn=-1)
