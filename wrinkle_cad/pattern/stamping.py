@@ -10,7 +10,7 @@ from typing import Final
 import ezdxf
 from ezdxf.tools.juliandate import juliandate
 
-EPOCH: Final = datetime(2000, 1, 1)
+EPOCH: Final = datetime(1970, 1, 1)
 """The time in a file when the caller gives none: the library never looks at a clock."""
 
 _TIMES: Final = ("$TDCREATE", "$TDUCREATE", "$TDUPDATE", "$TDUUPDATE")

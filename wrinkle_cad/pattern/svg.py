@@ -1,0 +1,160 @@
+"""Pattern pieces as SVG, 1:1 in millimetres, one group per layer, with a scale bar.
+
+Texts keep their letters (SVG is UTF-8); what XML does not allow is left out, everything else is
+escaped. y runs down in SVG, so the drawing is turned over once, here, and nowhere mirrored.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Final
+from xml.sax.saxutils import escape, quoteattr
+
+import numpy as np
+from ezdxf.colors import aci2rgb
+
+from wrinkle_cad import settings
+from wrinkle_cad.atomic import write_atomically
+from wrinkle_cad.errors import ExportError, InputError
+
+from .drawing import Label, Spot, Stroke, draw
+from .layers import LINE_TYPES, LayerStyle, Profile, profile_from
+from .nesting import laid_out
+from .piece import Floats, PatternPiece
+
+_MARGIN: Final = 10.0
+"""mm around everything."""
+_BAR: Final = settings.TEST_SQUARE
+_LINE_WIDTH: Final = 0.25
+_NOT_XML: Final = re.compile("[^\t\n\r\u0020-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
+
+
+def svg_bytes(
+    pieces: Sequence[PatternPiece], *, profile: str | Path | Profile = settings.DXF_PROFILE
+) -> bytes:
+    """Returns an SVG file of all pieces, laid out as in the DXF, in UTF-8.
+
+    Args:
+        pieces: at least one.
+        profile: whose layers and colours are used; block profiles are drawn as plain lines.
+
+    Raises:
+        InputError: no pieces, or an unknown profile.
+    """
+    if not pieces:
+        raise InputError("SVG - no pieces - at least one - make a pattern first")
+    chosen = profile if isinstance(profile, Profile) else profile_from(profile)
+    placed = laid_out(pieces)
+    corners = np.vstack([piece.cut_line for piece in placed])
+    labels = [label for piece in placed for label in draw(piece).labels]
+    reach = [label.position[0] + 0.9 * label.height * len(label.text) for label in labels]
+    low = np.minimum(corners.min(axis=0), [min(label.position[0] for label in labels), 0.0])
+    high = np.maximum(corners.max(axis=0), [max(reach), 0.0])
+    high[0] = max(high[0], low[0] + _BAR)
+    low[1] -= 2.0 * _MARGIN
+    left, top = low[0] - _MARGIN, high[1] + _MARGIN
+    width, height = high - low + 2.0 * _MARGIN
+    body = [*_layers(placed, chosen, left, top), *_scale_bar(low - (left, top), _MARGIN)]
+    head = (
+        '<?xml version="1.0" encoding="UTF-8"?>\n'
+        f'<svg xmlns="http://www.w3.org/2000/svg" width="{_number(width)}mm" '
+        f'height="{_number(height)}mm" viewBox="0 0 {_number(width)} {_number(height)}">\n'
+        f"<title>{_escaped(', '.join(piece.name for piece in placed))}</title>\n"
+    )
+    return (head + "\n".join(body) + "\n</svg>\n").encode("utf-8")
+
+
+def write_svg(
+    path: Path,
+    pieces: Sequence[PatternPiece],
+    *,
+    profile: str | Path | Profile = settings.DXF_PROFILE,
+) -> None:
+    """Writes an SVG file, whole or not at all; see ``svg_bytes``.
+
+    Raises:
+        InputError: as ``svg_bytes``.
+        ExportError: the file cannot be written.
+    """
+    content = svg_bytes(pieces, profile=profile)
+    try:
+        write_atomically(path, content)
+    except OSError as error:
+        raise ExportError(path, "SVG", f"{error.strerror} - check the folder") from error
+
+
+def colour_of(style: LayerStyle) -> str:
+    """Returns a style's colour as ``#rrggbb``; white on black is black on white here."""
+    if style.colour == 7:
+        return "#000000"
+    red, green, blue = aci2rgb(style.colour)
+    return f"#{red:02x}{green:02x}{blue:02x}"
+
+
+def _layers(pieces: Sequence[PatternPiece], profile: Profile, left: float, top: float) -> list[str]:
+    groups: dict[str, list[str]] = {}
+    for piece in pieces:
+        drawing = draw(piece)
+        items: tuple[Stroke | Spot | Label, ...]
+        items = (*drawing.strokes, *drawing.spots, *drawing.labels)
+        for item in items:
+            style = profile.styles.get(item.role)
+            if style is not None:
+                groups.setdefault(style.layer, []).append(_element(item, style, left, top))
+    lines = []
+    for layer, elements in groups.items():
+        lines.append(f'<g id={quoteattr("layer-" + layer)} fill="none">')
+        lines += elements
+        lines.append("</g>")
+    return lines
+
+
+def _element(item: Stroke | Spot | Label, style: LayerStyle, left: float, top: float) -> str:
+    colour = colour_of(style)
+    if isinstance(item, Label):
+        x, y = item.position[0] - left, top - item.position[1]
+        # Letters are 0.7 of the font size high.
+        return (
+            f'<text x="{_number(x)}" y="{_number(y)}" font-size="{_number(item.height / 0.7)}" '
+            f'font-family="sans-serif" fill="{colour}">{_escaped(item.text)}</text>'
+        )
+    pen = f'stroke="{colour}" stroke-width="{_LINE_WIDTH}"'
+    if isinstance(item, Spot):
+        x, y = item.position[0] - left, top - item.position[1]
+        return f'<circle cx="{_number(x)}" cy="{_number(y)}" r="0.5" {pen}/>'
+    dashes = LINE_TYPES[style.line_type][1][1:]
+    if dashes:
+        pattern = " ".join(_number(abs(dash) or _LINE_WIDTH) for dash in dashes)
+        pen += f' stroke-dasharray="{pattern}"'
+    shifted = np.column_stack((item.points[:, 0] - left, top - item.points[:, 1]))
+    tag = "polygon" if item.is_closed else "polyline"
+    return f'<{tag} points="{_points(shifted)}" {pen}/>'
+
+
+def _scale_bar(corner: Floats, margin: float) -> list[str]:
+    """Returns a bar of 100 mm with ticks every 10, its left end below ``corner``."""
+    x, y = corner[0], -corner[1] + 0.5 * margin
+    ticks = [
+        f"M{_number(x + 10.0 * i)} {_number(y)}v{-4 if i in (0, 5, 10) else -2}" for i in range(11)
+    ]
+    return [
+        '<g id="scale-bar" fill="none" stroke="#000000" stroke-width="0.25">',
+        f'<path d="M{_number(x)} {_number(y)}h{_number(_BAR)}{"".join(ticks)}"/>',
+        f'<text x="{_number(x + _BAR + 2.0)}" y="{_number(y)}" font-size="4" stroke="none" '
+        f'fill="#000000" font-family="sans-serif">{_BAR:g} mm</text>',
+        "</g>",
+    ]
+
+
+def _points(points: Floats) -> str:
+    return " ".join(f"{_number(x)},{_number(y)}" for x, y in points)
+
+
+def _number(value: float) -> str:
+    return f"{value + 0.0:.{settings.DXF_DECIMALS}f}".rstrip("0").rstrip(".")
+
+
+def _escaped(text: str) -> str:
+    return escape(_NOT_XML.sub(" ", text))
