@@ -36,6 +36,7 @@ LAYER = {
     "summary": 10,
     "workflow": 11,
     "inspection": 11,
+    "comparison": 11,
     "batch": 12,
     "doctor": 12,
     "screen": 12,

@@ -12,6 +12,7 @@ import os
 import sys
 import traceback
 from collections.abc import Sequence
+from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
@@ -70,6 +71,8 @@ def _parser() -> argparse.ArgumentParser:
     _add_run(commands)
     _add_batch(commands)
     _add_inspect(commands)
+    _add_compare(commands)
+    _add_check(commands)
     _add_doctor(commands)
     return parser
 
@@ -102,6 +105,26 @@ def _add_inspect(commands: Any) -> None:
     inspect.add_argument("--unit", choices=("mm", "cm", "m", "inch", "ft"))
     inspect.add_argument("--json", action="store_true", help="print one JSON value")
     _add_debug(inspect)
+
+
+def _add_compare(commands: Any) -> None:
+    compare = commands.add_parser("compare", help="run the paper's four methods on one file")
+    compare.set_defaults(command=_compare)
+    add_job_arguments(compare)
+    compare.add_argument("--name", metavar="STEM", help="stem of the outputs")
+    compare.add_argument("input", type=Path, metavar="INPUT", help="STEP, IGES or BREP file")
+    _add_debug(compare)
+
+
+def _add_check(commands: Any) -> None:
+    check = commands.add_parser("check", help="find what is wrong with a DXF pattern")
+    check.set_defaults(command=_check)
+    check.add_argument("input", type=Path, metavar="FILE.dxf", help="ours or another program's")
+    check.add_argument(
+        "--cut-layer", action="append", default=[], metavar="NAME", help="a layer that is cut"
+    )
+    check.add_argument("--json", action="store_true", help="print one JSON value")
+    _add_debug(check)
 
 
 def _add_doctor(commands: Any) -> None:
@@ -182,6 +205,37 @@ def _inspect(given: argparse.Namespace) -> int:
     else:
         print_inspection(inspection)
     return DONE
+
+
+def _compare(given: argparse.Namespace) -> int:
+    from .comparison import compare_job
+    from .job import make_job
+    from .screen import print_comparison
+
+    job = make_job(given.input, job_keywords(given, os.environ))
+    summary, outputs = compare_job(job)
+    print_comparison(summary)
+    for path in outputs:
+        print(path)
+    return DONE
+
+
+def _check(given: argparse.Namespace) -> int:
+    from .pattern.check import judge_dxf
+    from .screen import one_line
+
+    report = judge_dxf(given.input, cut_layers=tuple(given.cut_layer))
+    if given.json:
+        print(json.dumps({**asdict(report), "is_clean": report.is_clean}, indent=2))
+        return DONE if report.is_clean else FAILED
+    print(
+        f"{one_line(report.name)}: DXF {report.release}, {report.format},"
+        f" {report.contour_count} contours on layers {one_line(', '.join(report.cut_layers))}"
+    )
+    for finding in report.findings:
+        print(f"{finding.severity}: {finding.code}: {one_line(finding.message)}")
+    print("nothing wrong" if report.is_clean else "not fit to be cut as it is")
+    return DONE if report.is_clean else FAILED
 
 
 def _doctor(_: argparse.Namespace) -> int:

@@ -8,6 +8,7 @@ from datetime import datetime
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, cast
 
+from . import settings
 from .findings import Finding
 from .job import Job
 
@@ -17,12 +18,42 @@ if TYPE_CHECKING:
     from .pattern.dxf import DxfVersion
     from .pattern.options import PieceSettings
     from .report.material import Limits
+    from .wrinkle import WrinkleStrip
 
 
 def output_kinds(job: Job) -> tuple[str, ...]:
     """The endings of the files that the job writes, in the order in which they are listed."""
     extra = tuple(kind for kind in ("svg", "pdf") if getattr(job, kind))
     return ("step", "stl", "dxf", "json", "html", *extra)
+
+
+def strip_of(job: Job, p: object, q: object, name: str) -> WrinkleStrip:
+    """Makes one strip of the job.
+
+    Args:
+        job: the settings.
+        p: directrix P.
+        q: directrix Q.
+        name: of the strip; the job's own when the file gives none.
+
+    Raises:
+        InputError: a curve cannot be used.
+        CadError: the kernel could not evaluate a curve.
+    """
+    from .wrinkle import WrinkleStrip
+
+    return WrinkleStrip(
+        p,
+        q,
+        name=job.name if name == settings.STRIP_NAME else name,
+        tolerance=job.tolerance,
+        surface=job.surface,
+        criteria=job.criteria,
+        search=job.search,
+        energy=job.energy,
+        planarity=job.planarity,
+        max_chord=job.max_chord,
+    )
 
 
 def limits_of(job: Job) -> Limits:

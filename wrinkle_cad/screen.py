@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import sys
 import unicodedata
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from .inspection import Inspection
@@ -70,3 +70,27 @@ def print_inspection(inspection: Inspection) -> None:
     console.print(table)
     for reason in inspection.reasons:
         console.print(Text(one_line(reason)))
+
+
+def print_comparison(summary: Mapping[str, Any]) -> None:
+    """Prints the methods of each strip as a table."""
+    from rich.console import Console
+    from rich.table import Table
+    from rich.text import Text
+
+    console = Console(soft_wrap=not sys.stdout.isatty(), highlight=False)
+    for strip in summary["strips"]:
+        console.print(Text(one_line(strip["name"])))
+        table = Table(
+            "method", "valid bridges", "energy", "area mm2", "largest fold deg", "seconds"
+        )
+        for row in strip["methods"]:
+            table.add_row(
+                row["method"],
+                f"{row['valid_bridges']} of {row['interior_bridges']}",
+                f"{row['bending']:.4g}",
+                f"{row['area_mm2']:.2f}",
+                f"{row['max_fold_deg']:.2f}",
+                f"{row['seconds']:.4f}",
+            )
+        console.print(table)

@@ -8,12 +8,11 @@ from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
-from . import settings
 from .cad.loading import kernel_importable
 from .errors import WrinkleError
 from .findings import Finding
 from .job import Job
-from .job_parts import limits_of, output_kinds, piece_settings_of, write_pattern
+from .job_parts import limits_of, output_kinds, piece_settings_of, strip_of, write_pattern
 from .outcome import JobDone, JobFailed, Progress
 from .outputs import check_outputs_are_ours, hashes_of, outputs_together
 from .phases import PhaseClock
@@ -100,23 +99,7 @@ def _read(job: Job) -> tuple[CadFile, Chosen]:
 
 
 def _make_strips(job: Job, chosen: Chosen) -> list[WrinkleStrip]:
-    from .wrinkle import WrinkleStrip
-
-    return [
-        WrinkleStrip(
-            given.p.shape,
-            given.q.shape,
-            name=job.name if given.name == settings.STRIP_NAME else given.name,
-            tolerance=job.tolerance,
-            surface=job.surface,
-            criteria=job.criteria,
-            search=job.search,
-            energy=job.energy,
-            planarity=job.planarity,
-            max_chord=job.max_chord,
-        )
-        for given in chosen.strips
-    ]
+    return [strip_of(job, given.p.shape, given.q.shape, given.name) for given in chosen.strips]
 
 
 def findings_on(strip: WrinkleStrip, report: StripReport) -> Iterator[Finding]:

@@ -21,6 +21,8 @@ from .strip.unrolling import Unrolling, unroll, unroll_cones
 from .strip_report import StripReport, report_on
 
 if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
     from .cut_pattern import Pattern
     from .pattern.options import PieceSettings
 
@@ -203,6 +205,24 @@ class WrinkleStrip:
         from .cut_pattern import pattern_of_strips
 
         return pattern_of_strips([self], piece_settings)
+
+    def plot_validity(self, ax: Axes) -> Axes:
+        """Draws the validity matrix with this strip's path and the local one's on matplotlib axes."""
+        from .report.figures import plot_validity
+
+        return plot_validity(ax, self.valid, self.triangulation, others=(self.local,))
+
+    def plot_energy(self, ax: Axes) -> Axes:
+        """Draws the bending energy along the strip beside the local and the least-bending one."""
+        from .report.figures import plot_energy
+
+        return plot_energy(ax, self.triangulation, (self.local, self.least_bending))
+
+    def plot_pattern(self, ax: Axes, piece_settings: PieceSettings | None = None) -> Axes:
+        """Draws the pattern to scale on matplotlib axes; the settings are those of ``pattern``."""
+        from .report.figures import plot_pattern
+
+        return plot_pattern(ax, self.pattern(piece_settings).pieces)
 
     def export_step(self, path: str | Path, *, schema: str = settings.STEP_SCHEMA) -> None:
         """Writes the surface as STEP.

@@ -1,0 +1,54 @@
+"""The paper's methods side by side on the strips of one file."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any, Final
+
+from .cad.loading import kernel_importable
+from .job import Job
+from .job_parts import strip_of
+from .outputs import check_outputs_are_ours, outputs_together
+from .summary import to_json
+
+_KINDS: Final = ("compare.json", "compare.html")
+
+
+def compare_job(job: Job) -> tuple[dict[str, Any], tuple[Path, ...]]:
+    """Runs LODT+LMBT, GODT+GMBT, GMBT and GMAT on every strip of a file.
+
+    Writes NAME.compare.json and NAME.compare.html.
+
+    Args:
+        job: the input, which curves to take, tolerance, energy and planarity; the criteria and
+            the search are those of the methods.
+
+    Returns:
+        What the JSON holds, and the files.
+
+    Raises:
+        InputError: the file or a curve cannot be used.
+        ExportError: the files cannot be written.
+    """
+    with kernel_importable():
+        from .cad.choose import choose_inputs
+        from .cad.read import read_cad
+    check_outputs_are_ours(job, _KINDS)
+    chosen = choose_inputs(read_cad(job.input, unit=job.unit), p=job.p, q=job.q, upper=job.upper)
+
+    from .report.compare import compare, comparison_summary, write_comparison_page
+
+    rows = {}
+    for given in chosen.strips:
+        strip = strip_of(job, given.p.shape, given.q.shape, given.name)
+        rows[strip.name] = compare(
+            strip.p_samples.points,
+            strip.q_samples.points,
+            energy=job.energy,
+            planarity=strip.planarity,
+        )
+    summary = comparison_summary(rows, file=job.input.name)
+    with outputs_together(job, _KINDS) as paths:
+        paths["compare.json"].write_text(to_json(summary), encoding="utf-8")
+        paths["compare.html"].write_text(write_comparison_page(summary), encoding="utf-8")
+    return summary, tuple(job.output_dir / f"{job.name}.{kind}" for kind in _KINDS)
