@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 from OCP.BRep import BRep_Builder, BRep_Tool
 from OCP.BRepAdaptor import BRepAdaptor_Curve
-from OCP.TopExp import TopExp
+from OCP.TopAbs import TopAbs_REVERSED
 from OCP.TopoDS import TopoDS_Edge, TopoDS_Face, TopoDS_Shape, TopoDS_Shell
 
 from . import kernel
@@ -83,9 +83,16 @@ def border_chain(
 
 
 def edge_ends(edge: TopoDS_Edge) -> tuple[Floats, Floats]:
-    """Returns (3,) mm each: where an edge starts and ends, along its orientation."""
-    first, last = TopExp.FirstVertex_s(edge, True), TopExp.LastVertex_s(edge, True)
-    return kernel.vertex_point(first), kernel.vertex_point(last)
+    """Returns (3,) mm each: where the curve of an edge starts and ends, along its orientation.
+
+    A vertex may stand off the curve by its tolerance, which in a joined upper is not small.
+    """
+    adaptor = BRepAdaptor_Curve(edge)
+    ends = [adaptor.Value(adaptor.FirstParameter()), adaptor.Value(adaptor.LastParameter())]
+    if edge.Orientation() == TopAbs_REVERSED:
+        ends.reverse()
+    start, end = (np.array([at.X(), at.Y(), at.Z()]) for at in ends)
+    return start, end
 
 
 def edge_middle(edge: TopoDS_Edge) -> Floats:

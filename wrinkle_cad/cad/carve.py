@@ -25,11 +25,13 @@ from .outline import (
     side_of,
 )
 from .projection import UpperFaces
+from .sewing import joined
 from .smooth import smooth_edge
 from .splitting import ShapeIndex, Split, split_faces
 
 Floats = NDArray[np.float64]
 STEP = "carve the upper"
+ENDS = ("start", "end")
 
 
 def carve(
@@ -40,6 +42,7 @@ def carve(
     margin: float = 0.0,
     fade: float = settings.FADE,
     limit: float = settings.RAIL_OFF_UPPER,
+    join: float = settings.SEWING,
     allow_split: bool = False,
 ) -> Opening:
     """Cuts the strip between two rails out of an upper.
@@ -54,6 +57,8 @@ def carve(
         margin: mm; how far the opening reaches beyond the rails. The margin fades to 0 at the ends.
         fade: the share of the rails, 0 to 0.5, over which the margin fades.
         limit: mm; a rail further from the upper is refused.
+        join: mm; faces of the upper that do not share edges are joined where their borders are
+            nearer than this. Wider gaps stay open and the strip runs on across them.
         allow_split: whether the opening may cut the upper in two.
 
     Raises:
@@ -61,19 +66,23 @@ def carve(
             cuts the upper in two; values out of range.
         CadError: the kernel cannot split the upper, or areas do not add up.
     """
-    _check_numbers(margin, fade, limit)
+    _check_numbers(margin, fade, limit, join)
     first, second, _ = orient_alike(make_directrix(p, name="P"), make_directrix(q, name="Q"))
-    request = CarveRequest(first, second, margin, fade, limit, allow_split)
+    request = CarveRequest(first, second, margin, fade, limit, join, allow_split)
     return carve_shape(kernel.unwrap(upper), request, source=upper)
 
 
 def carve_shape(shape: TopoDS_Shape, request: CarveRequest, *, source: object = None) -> Opening:
     """Cuts an opening into a shape of the kernel; see ``carve``."""
+    shape, order = _joined_upper(shape, request.join)
     faces = UpperFaces(shape)
     rails = (rail_on(faces, request.p, "P"), rail_on(faces, request.q, "Q"))
     for rail, name in zip(rails, "PQ", strict=True):
         _check_near(rail, name, request.limit)
-    across = (across_rail(rails[0], rails[1], ("P", "Q")), across_rail(rails[1], rails[0], ("Q", "P")))
+    across = (
+        across_rail(rails[0], rails[1], ("P", "Q")),
+        across_rail(rails[1], rails[0], ("Q", "P")),
+    )
     on_border = _ends_on_border(shape, rails)
     sides = _sides(faces, rails, across, request, on_border)
     height = settings.RIBBON_PER_LENGTH * min(rail.length for rail in rails)
@@ -82,7 +91,7 @@ def carve_shape(shape: TopoDS_Shape, request: CarveRequest, *, source: object = 
     body, removed, origin = _divided(split)
     _check_removed(removed, rails)
     count = _check_whole(faces, body, request.allow_split)
-    chains = _chains(split, sides, removed, on_border, rails)
+    chains, lost = _chains(split, sides, removed, on_border, rails)
     return Opening(
         body_shape=joined_faces(body),
         removed_shape=joined_faces(removed),
@@ -95,14 +104,23 @@ def carve_shape(shape: TopoDS_Shape, request: CarveRequest, *, source: object = 
         rails=rails,
         across=across,
         ends_on_border=on_border,
-        face_origin=origin,
+        face_origin=tuple(order[i] for i in origin),
         distances=(float(rails[0].feet.distances.max()), float(rails[1].feet.distances.max())),
         areas=_checked_areas(shape, body, removed),
         body_count=count,
+        lost_border=lost,
         upper_shape=shape,
         request=request,
         source=source,
     )
+
+
+def _joined_upper(shape: TopoDS_Shape, join: float) -> tuple[TopoDS_Shape, list[int]]:
+    """Returns the upper with its faces joined, and for each the index of the one given."""
+    faces = kernel.faces_of(shape)
+    if join > 0.0 and len(connected_groups(faces)) > 1:
+        return joined(faces, join)
+    return shape, list(range(len(faces)))
 
 
 def _sides(
@@ -123,11 +141,12 @@ def _sides(
     return sides
 
 
-def _check_numbers(margin: float, fade: float, limit: float) -> None:
+def _check_numbers(margin: float, fade: float, limit: float, join: float) -> None:
     for name, value, low, high in (
         ("margin", margin, 0.0, np.inf),
         ("fade", fade, settings.FADE_MIN, 0.5),
         ("limit", limit, 0.0, np.inf),
+        ("join", join, 0.0, np.inf),
     ):
         if not low <= value <= high or not np.isfinite(value):
             raise InputError(f"{name} - found {value:g} - {low:g} to {high:g} is the range")
@@ -216,8 +235,8 @@ def _chains(
     removed: Sequence[TopoDS_Face],
     on_border: tuple[bool, bool],
     rails: tuple[Rail, Rail],
-) -> list[tuple[TopoDS_Edge, ...]]:
-    """Returns the edges along P and Q and across both ends."""
+) -> tuple[list[tuple[TopoDS_Edge, ...]], float]:
+    """Returns the edges along P and Q and across both ends, and mm of border lost besides."""
     named: dict[str, tuple[TopoDS_Edge, ...]] = {
         side.name: tuple(cut.edge for cut in split.cuts if cut.side == i)
         for i, side in enumerate(sides)
@@ -230,7 +249,7 @@ def _chains(
     ]
     corners = np.array([[rail.points[at] for rail in rails] for at in (0, -1)])
     middles = corners.mean(axis=1)
-    for at, name in ((0, "start"), (1, "end")):
+    for at, name in enumerate(ENDS):
         if on_border[at]:
             near = [
                 edge
@@ -238,7 +257,9 @@ def _chains(
                 if int(np.argmin(np.linalg.norm(middles - edge_middle(edge), axis=1))) == at
             ]
             named[name] = border_chain(near, corners[at, 0], corners[at, 1])
-    return [named.get(name, ()) for name in ("p", "q", "start", "end")]
+    kept = ShapeIndex(edge for at in (0, 1) if on_border[at] for edge in named[ENDS[at]])
+    lost = sum(kernel.length_of(edge) for edge in border if kept.find(edge) < 0)
+    return [named.get(name, ()) for name in ("p", "q", *ENDS)], lost
 
 
 def _rail_curve(rail: Rail, given: Directrix) -> Directrix:

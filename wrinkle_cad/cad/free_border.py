@@ -31,12 +31,15 @@ class Border:
     """mm."""
 
 
-def compared_border(upper: TopoDS_Shape, shell: TopoDS_Shape, allowance: float) -> Border:
+def compared_border(
+    upper: TopoDS_Shape, shell: TopoDS_Shape, lost: float, allowance: float
+) -> Border:
     """Returns the free edges of upper and shell after checking that they are the same lines.
 
     Args:
         upper: before.
         shell: after.
+        lost: mm; border of the upper that was carved out with the strips.
         allowance: mm; how much longer the border may be: by what strips bridge gaps of the upper.
 
     Raises:
@@ -52,12 +55,13 @@ def compared_border(upper: TopoDS_Shape, shell: TopoDS_Shape, allowance: float) 
             " all, are none of the upper's - 0 is the limit - the wrinkle is not watertight: change"
             " the margin, or move the rails a little",
         )
-    off = lengths[1] - lengths[0]
+    off = lengths[1] - (lengths[0] - lost)
     slack = allowance + settings.SEWING * (1 + len(after))
     if not -slack <= off <= slack:
         raise CadError(
             STEP,
-            f"the border is {lengths[1]:.6g} mm long, the upper's {lengths[0]:.6g} mm -"
+            f"the border is {lengths[1]:.6g} mm long, the upper's {lengths[0] - lost:.6g} mm"
+            " without what was carved out -"
             f" {slack:.3g} mm is the limit - change the margin, or move the rails a little",
         )
     return Border(len(before), len(after), lengths[0], lengths[1])

@@ -24,6 +24,7 @@ class CarveRequest:
     margin: float
     fade: float
     limit: float
+    join: float
     allow_split: bool
 
 
@@ -61,8 +62,10 @@ class Opening:
     """mm^2: upper, body, removed."""
     body_count: int
     """Connected parts of the body."""
+    lost_border: float
+    """mm; border of the upper that was cut out: slits between its faces, holes."""
     upper_shape: TopoDS_Shape
-    """The upper as it was given."""
+    """The upper, its faces joined where they meet."""
     request: CarveRequest
     """What was asked for."""
     source: Any = None

@@ -5,12 +5,16 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+from OCP.BRep import BRep_Builder, BRep_Tool
+from OCP.BRepAdaptor import BRepAdaptor_Curve
 from OCP.BRepBuilderAPI import BRepBuilderAPI_Sewing
+from OCP.Geom import Geom_BSplineCurve
 from OCP.TopAbs import TopAbs_REVERSED
-from OCP.TopoDS import TopoDS_Face, TopoDS_Shell
+from OCP.TopoDS import TopoDS_Face, TopoDS_Shape, TopoDS_Shell
 
 from ..errors import CadError
 from . import kernel
+from .borders import sub_curve
 from .splitting import ShapeIndex, oriented_edges
 
 STEP = "sew the wrinkle to the body"
@@ -24,6 +28,36 @@ class Sewn:
     """The shell, its normals as in the first face given."""
     faces: tuple[TopoDS_Face, ...]
     """What each face given has become, in order, as the shell holds it."""
+
+
+def joined(faces: Sequence[TopoDS_Face], tolerance: float) -> tuple[TopoDS_Shape, list[int]]:
+    """Joins the faces of an upper whose borders lie within a tolerance in mm of each other.
+
+    Returns:
+        The faces, sewn where they meet, and for each of its faces the index of the one given.
+
+    Raises:
+        CadError: a face went missing.
+    """
+    with kernel.kernel_step("join the faces of the upper"):
+        sewing = BRepBuilderAPI_Sewing(tolerance)
+        for face in faces:
+            sewing.Add(face)
+        sewing.Perform()
+        sewn = sewing.SewedShape()
+    places = ShapeIndex(kernel.faces_of(sewn))
+    origin = [-1] * len(kernel.faces_of(sewn))
+    for i, face in enumerate(faces):
+        at = places.find(sewing.Modified(face) if sewing.IsModified(face) else face)
+        if at >= 0:
+            origin[at] = i
+    if len(origin) != len(faces) or min(origin) < 0:
+        raise CadError(
+            "join the faces of the upper",
+            f"{len(origin)} of {len(faces)} faces are left at a tolerance of {tolerance:.2g} mm -"
+            " all are needed - lower it",
+        )
+    return sewn, origin
 
 
 def sew(faces: Sequence[TopoDS_Face], tolerance: float) -> Sewn:
@@ -59,7 +93,30 @@ def sew(faces: Sequence[TopoDS_Face], tolerance: float) -> Sewn:
         shell = kernel.as_shell(shell.Reversed())
     kept = kernel.faces_of(shell)
     _check_oriented(shell)
+    _trim_curves(shell, faces)
     return Sewn(shell, tuple(kept[place] for place in places))
+
+
+def _trim_curves(shell: TopoDS_Shell, given: Sequence[TopoDS_Face]) -> None:
+    """Gives each edge that sewing made the part of its curve that it uses.
+
+    Sewing cuts an edge into many on one and the same curve, and a STEP file holds it for each.
+    """
+    old = ShapeIndex(edge for face in given for edge in oriented_edges(face))
+    for edge in kernel.edges_of(shell):
+        if old.find(edge) >= 0 or BRep_Tool.Degenerated_s(edge):
+            continue
+        ends = BRepAdaptor_Curve(edge)
+        first, last = ends.FirstParameter(), ends.LastParameter()
+        curve = BRep_Tool.Curve_s(edge, first, last)
+        if (
+            isinstance(curve, Geom_BSplineCurve)
+            and curve.NbKnots() > 2
+            and edge.Location().IsIdentity()
+        ):
+            part = sub_curve(curve, first, last)
+            BRep_Builder().UpdateEdge(edge, part, BRep_Tool.Tolerance_s(edge))
+            BRep_Builder().Range(edge, first, last)
 
 
 def _check_oriented(shell: TopoDS_Shell) -> None:

@@ -173,7 +173,12 @@ def _stitched(
     grouped: dict[str, list[TopoDS_Face]] = {}
     for face, part in zip(sewn.faces, parts, strict=True):
         grouped.setdefault(part, []).append(face)
-    border = compared_border(upper, sewn.shell, sum(_gaps_bridged(item) for item in chained))
+    border = compared_border(
+        upper,
+        sewn.shell,
+        sum(opening.lost_border for opening in chained),
+        sum(_gaps_bridged(opening) for opening in chained),
+    )
     kernel.check_valid(sewn.shell, STEP)
     report = StitchReport(
         face_count=len(sewn.faces),
