@@ -19,6 +19,7 @@ SCHEMA: Final = "wrinkle_cad/job"
 SCHEMA_VERSION: Final = 1
 PAGE_MARK: Final = '<meta name="generator" content="wrinkle_cad'
 
+_SCHEMAS: Final = "wrinkle_cad/"
 _HASH_CHUNK: Final = 1 << 20
 
 
@@ -30,7 +31,8 @@ def output_paths(job: Job, kinds: tuple[str, ...]) -> dict[str, Path]:
 def check_outputs_are_ours(job: Job, kinds: tuple[str, ...]) -> None:
     """Raises a ``JobError`` when an output would replace the input or a file of somebody else.
 
-    A file is ours when NAME.json beside it lists it with the hash that it has.
+    A JSON file is ours by its schema, a page by its generator; any other file when NAME.json lists
+    it with the hash that it has.
     """
     listed = _listed_outputs(job.output_dir / f"{job.name}.json")
     for path in output_paths(job, kinds).values():
@@ -82,28 +84,29 @@ def outputs_together(job: Job, kinds: tuple[str, ...]) -> Iterator[dict[str, Pat
 
 
 def _listed_outputs(json_path: Path) -> dict[str, Any]:
+    listed = _own_json(json_path).get("outputs", {})
+    return {entry["file"]: entry["sha256"] for entry in listed.values()}
+
+
+def _own_json(path: Path) -> dict[str, Any]:
+    """What a JSON file of this program holds; nothing if it is not one."""
     try:
-        content = json.loads(json_path.read_text(encoding="utf-8"))
+        content = json.loads(path.read_text(encoding="utf-8"))
     except (OSError, UnicodeDecodeError, json.JSONDecodeError):
         return {}
-    if not isinstance(content, dict) or content.get("schema") != SCHEMA:
-        return {}
-    listed = content.get("outputs")
-    own = {json_path.name: None}
-    if isinstance(listed, dict):
-        own.update({entry["file"]: entry["sha256"] for entry in listed.values()})
-    return own
+    is_ours = isinstance(content, dict) and str(content.get("schema")).startswith(_SCHEMAS)
+    return content if is_ours else {}
 
 
 def _is_ours(path: Path, listed: Mapping[str, Any]) -> bool:
     if not path.is_file():
         return False
+    if path.suffix == ".json":
+        return bool(_own_json(path))
     if path.suffix == ".html":
         # The page shows seconds, so its hash is not in the JSON.
         return PAGE_MARK in path.read_text(encoding="utf-8", errors="replace")
-    if path.name not in listed:
-        return False
-    return listed[path.name] is None or listed[path.name] == _sha256(path)
+    return path.name in listed and listed[path.name] == _sha256(path)
 
 
 def _sha256(path: Path) -> str:

@@ -81,9 +81,8 @@ def print_comparison(summary: Mapping[str, Any]) -> None:
     console = Console(soft_wrap=not sys.stdout.isatty(), highlight=False)
     for strip in summary["strips"]:
         console.print(Text(one_line(strip["name"])))
-        table = Table(
-            "method", "valid bridges", "energy", "area mm2", "largest fold deg", "seconds"
-        )
+        columns = ("method", "valid bridges", "energy", "area mm2", "largest fold deg", "seconds")
+        table = Table(*columns)
         for row in strip["methods"]:
             table.add_row(
                 row["method"],

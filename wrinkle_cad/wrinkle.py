@@ -207,7 +207,7 @@ class WrinkleStrip:
         return pattern_of_strips([self], piece_settings)
 
     def plot_validity(self, ax: Axes) -> Axes:
-        """Draws the validity matrix with this strip's path and the local one's on matplotlib axes."""
+        """Draws the validity matrix with this strip's path and the local one's."""
         from .report.figures import plot_validity
 
         return plot_validity(ax, self.valid, self.triangulation, others=(self.local,))

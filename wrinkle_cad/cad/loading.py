@@ -1,0 +1,29 @@
+"""Loading the CAD kernel: fast, and with one plain line when it cannot be loaded."""
+
+from __future__ import annotations
+
+import gc
+from collections.abc import Iterator
+from contextlib import contextmanager
+
+from ..errors import CadError
+
+
+@contextmanager
+def kernel_importable() -> Iterator[None]:
+    """Wraps the imports that load the kernel.
+
+    Raises:
+        CadError: a shared library or a wheel is missing; the message says what to do.
+    """
+    was_on = gc.isenabled()
+    # The kernel's bindings make so many objects that collecting meanwhile doubles the time.
+    gc.disable()
+    try:
+        yield
+    except ImportError as error:
+        said = " ".join(str(error).split())
+        raise CadError("load the CAD kernel", f"{said} - run wrinkle-cad doctor") from error
+    finally:
+        if was_on:
+            gc.enable()
