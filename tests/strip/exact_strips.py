@@ -29,7 +29,9 @@ class ExactStrip:
     def sampled(self, tolerance: float) -> SampledStrip:
         p = sample_curve(self.p_at, self.interval, tolerance)
         q = sample_curve(self.q_at, self.interval, tolerance)
-        at = [np.interp(self.inflections, s.parameters, np.arange(s.parameters.size)) for s in (p, q)]
+        at = [
+            np.interp(self.inflections, s.parameters, np.arange(s.parameters.size)) for s in (p, q)
+        ]
         return SampledStrip(self.name, p.points, q.points, np.stack(at, axis=1))
 
 
@@ -227,7 +229,9 @@ def random_points(seed: int, m: int, n: int) -> tuple[Floats, Floats]:
     if seed % 10 == 8:
         p[:, 2] = q[:, 2] = 0.0
     if seed % 10 == 9:
-        q[0], q[-1] = p[0], p[-1]
+        q[0] = p[0]
+        if m + n > 4:
+            q[-1] = p[-1]
     return p, q
 
 

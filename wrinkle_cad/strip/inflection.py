@@ -64,6 +64,8 @@ def inflection_bridges(path: Path, sagitta: float) -> Bools:
     """
     invalid = ~path.valid
     invalid[[0, -1]] = False
+    if not invalid.any():
+        return invalid
     near = _near(path.bridges)
     fold = np.concatenate(([0.0], path.fold, [0.0]))
     misfit = np.zeros(invalid.size)
