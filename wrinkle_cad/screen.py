@@ -86,7 +86,7 @@ def print_comparison(summary: Mapping[str, Any]) -> None:
         for row in strip["methods"]:
             table.add_row(
                 row["method"],
-                f"{row['valid_bridges']} of {row['interior_bridges']}",
+                f"{row['valid_bridges']} of {row['bridges']}",
                 f"{row['bending']:.4g}",
                 f"{row['area_mm2']:.2f}",
                 f"{row['max_fold_deg']:.2f}",
