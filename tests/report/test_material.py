@@ -88,7 +88,9 @@ def test_the_bend_radius_of_a_cylinder_is_its_radius(m: int, n: int, thickness: 
 
 def test_the_bend_radius_gets_exact_when_rulings_are_parallel() -> None:
     turn = np.linspace(0.0, 2.0, 400)
-    rails = [np.column_stack((25.0 * np.cos(turn), 25.0 * np.sin(turn), z + 0.0 * turn)) for z in (0, 9)]
+    rails = [
+        np.column_stack((25.0 * np.cos(turn), 25.0 * np.sin(turn), z + 0.0 * turn)) for z in (0, 9)
+    ]
     strip = triangulate(*rails)
     assert smallest_bend_radius(strip) == pytest.approx(25.0, rel=0.01)
 
@@ -97,7 +99,7 @@ def test_a_flat_strip_has_no_bend_radius() -> None:
     radius = smallest_bend_radius(triangulate(*planar_rails()))
     assert radius > 1e6
     flat = np.array([[0.0, 0.0, 0.0], [1.0, 0.0, 0.0]])
-    assert smallest_bend_radius(triangulate(flat, flat + [0.0, 1.0, 0.0])) == math.inf
+    assert smallest_bend_radius(triangulate(flat, flat + np.array([0.0, 1.0, 0.0]))) == math.inf
 
 
 def test_a_crease_is_as_sharp_as_the_material_is_thick() -> None:

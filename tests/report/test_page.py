@@ -25,7 +25,9 @@ from wrinkle_cad.report.numbers import Numbers, written
 from wrinkle_cad.report.page import write_page
 from wrinkle_cad.report.views import MeshView, StripView
 
-HOSTILE = "</script><script>window.pwned=1</script><img src=x onerror='window.pwned=1'>&\"\x00\ud800"
+HOSTILE = (
+    "</script><script>window.pwned=1</script><img src=x onerror='window.pwned=1'>&\"\x00\ud800"
+)
 
 
 @pytest.fixture(scope="module")

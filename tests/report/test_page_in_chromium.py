@@ -151,9 +151,11 @@ def test_the_3d_view_turns_zooms_and_returns(page: webdriver.Chrome) -> None:
     start = picture(page, "space")
     ActionChains(page, duration=50).drag_and_drop_by_offset(stage, 120, 40).perform()
     turned = until(
-        lambda: (now := picture(page, "space")).shape == start.shape
-        and (now != start).any()
-        and now.tobytes(),
+        lambda: (
+            (now := picture(page, "space")).shape == start.shape
+            and (now != start).any()
+            and now.tobytes()
+        ),
         "a turned view",
     )
     page.execute_script(
@@ -252,9 +254,7 @@ def test_the_matrix_zooms_to_single_bridges(browser: webdriver.Chrome, tmp_path:
 def test_a_hostile_label_stays_text(browser: webdriver.Chrome, tmp_path: Path) -> None:
     rails = cylinder_rails(20, 20)
     views = [view_of(rails, HOSTILE), view_of(planar_rails(), "second")]
-    summary = summary_of(
-        views, Limits(max_fold_deg=0.1, material=HOSTILE), input={"file": HOSTILE}
-    )
+    summary = summary_of(views, Limits(max_fold_deg=0.1, material=HOSTILE), input={"file": HOSTILE})
     open_page(browser, tmp_path / "hostile.html", write_page(summary, views, dome(6)))
     point_at(browser, canvas(browser, "curves"), 0.5, 0.5)
     until(lambda: agreed_highlight(browser), "the same bridge in every view")
@@ -303,9 +303,7 @@ def test_nothing_sticks_out_sideways(
 
 
 @pytest.mark.parametrize("dark", [False, True])
-def test_the_page_prints(
-    browser: webdriver.Chrome, tmp_path: Path, html: str, dark: bool
-) -> None:
+def test_the_page_prints(browser: webdriver.Chrome, tmp_path: Path, html: str, dark: bool) -> None:
     open_page(browser, tmp_path / "vamp.html", html, dark=dark)
     printed = browser.execute_cdp_cmd("Page.printToPDF", {"printBackground": False})["data"]
     pdf = base64.b64decode(printed)

@@ -197,8 +197,19 @@ def _gaps_card(numbers: Numbers) -> Element | None:
     if not rows:
         return None
     note = "Runs of bridges that are not locally convex. Click a row to see its middle."
+    advice = {
+        gap["kind"]: gap["advice"] for entry in numbers.get("/strips") for gap in entry["gaps"]
+    }
+    lines = (
+        node("div", node("dt", kind.capitalize()), node("dd", words))
+        for kind, words in advice.items()
+    )
     return _card(
-        "Where it is not developable", table(columns, rows), node("p", note, class_="note")
+        "Where it is not developable",
+        table(columns, rows),
+        node("p", note, class_="note"),
+        node("h3", "What to change", class_="below"),
+        node("dl", *lines, class_="advice"),
     )
 
 
