@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import gzip
+import os
 from pathlib import Path
 
 import pytest
@@ -103,7 +104,21 @@ def test_a_small_file_that_unpacks_to_a_huge_one_is_refused(tmp_path: Path) -> N
         source_of(tmp_path, bomb, size_limit=1_000_000)
 
 
-@pytest.mark.parametrize(("name", "cause"), [("none.step", "No such file"), (".", "directory")])
+@pytest.mark.parametrize(
+    ("name", "cause"), [("none.step", "No such file"), (".", "a directory"), ("a\0b", "null")]
+)
 def test_what_cannot_be_opened_says_why(tmp_path: Path, name: str, cause: str) -> None:
     with pytest.raises(InputError, match=cause):
         read_source(tmp_path / name)
+
+
+def test_a_pipe_is_refused_and_not_waited_for(tmp_path: Path) -> None:
+    os.mkfifo(tmp_path / "pipe")
+    with pytest.raises(InputError, match="not a regular file"):
+        read_source(tmp_path / "pipe")
+
+
+def test_many_comments_before_something_else_cost_no_time(tmp_path: Path) -> None:
+    """A plain pattern would need some 2^300 steps here."""
+    with pytest.raises(InputError, match="not a STEP"):
+        source_of(tmp_path, b"/* a */ " * 300 + b"SOMETHING ELSE")

@@ -8,6 +8,7 @@ bytes are in memory before the kernel's 0.7 s import begins.
 from __future__ import annotations
 
 import re
+import stat
 import zlib
 from dataclasses import dataclass
 from pathlib import Path
@@ -23,7 +24,8 @@ IGES: Final = "IGES"
 _GZIP = b"\x1f\x8b"
 _POINTER = b"version https://git-lfs.github.com/spec/"
 _BREP_HEAD = re.compile(rb"\s*(DBRep_DrawableShape|CASCADE Topology V|Open CASCADE Topology V)")
-_STEP_HEAD = re.compile(rb"(?:\s|/\*.*?\*/)*ISO-10303-21\s*;", re.DOTALL)
+# Atomic: without it, many comments before something else take time exponential in their number.
+_STEP_HEAD = re.compile(rb"(?:\s|(?>/\*.*?\*/))*+ISO-10303-21\s*;", re.DOTALL)
 _IGES_HEAD = re.compile(rb"[^\r\n]{72}[SF]\s*0*1\s*[\r\n]")
 _MARKS = (
     (b"\xef\xbb\xbf", "utf-8-sig"),
@@ -90,16 +92,19 @@ def read_source(path: Path, *, size_limit: int = settings.FILE_SIZE_LIMIT) -> So
 
 def _read(path: Path, size_limit: int) -> bytes:
     try:
+        found = path.stat()
+        if found.st_size > size_limit:
+            raise _too_large(path, f"{found.st_size / 2**20:.1f} MiB", size_limit)
+        if not stat.S_ISREG(found.st_mode):
+            what = "a directory" if stat.S_ISDIR(found.st_mode) else "not a regular file"
+            raise InputError(f"read {path.name} - {what} - name a STEP, BREP or IGES file")
         with path.open("rb") as stream:
-            # One byte more than allowed tells a file that grew, or a pipe that has no size.
-            content = stream.read(size_limit + 1)
-            size = path.stat().st_size
-    except OSError as error:
-        reason = error.strerror or type(error).__name__
+            return stream.read(size_limit)
+    except (OSError, ValueError) as error:
+        if isinstance(error, InputError):
+            raise
+        reason = getattr(error, "strerror", None) or str(error)
         raise InputError(f"read {path.name} - {reason} - check the path") from error
-    if max(len(content), size) > size_limit:
-        raise _too_large(path, f"{max(len(content), size) / 2**20:.1f} MiB", size_limit)
-    return content
 
 
 def _too_large(path: Path, found: str, size_limit: int) -> InputError:

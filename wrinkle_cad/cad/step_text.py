@@ -23,7 +23,6 @@ _LIST = re.compile(rb"\(([^()]*)\)")
 _END_LIKE = re.compile(rb"(?<=[^,(\s'/])\'\'(?=\s*[),])")
 _NUMERIC = re.compile(rb"\s*[-+.\d#]")
 _REFERENCE = re.compile(rb"#\s*(\d+)")
-_SPLINE = re.compile(rb"B_SPLINE_(CURVE|SURFACE)_WITH_KNOTS|RATIONAL_B_SPLINE_(CURVE|SURFACE)")
 _SI_PREFIX: Final = {
     b"MICRO": "micrometre",
     b"MILLI": "mm",
