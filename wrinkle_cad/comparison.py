@@ -45,7 +45,7 @@ def compare_job(job: Job) -> tuple[dict[str, Any], tuple[Path, ...]]:
             strip.p_samples.points,
             strip.q_samples.points,
             energy=job.energy,
-            planarity=strip.planarity,
+            planarity=strip.triangulation.planarity,
         )
     summary = comparison_summary(rows, file=job.input.name)
     with outputs_together(job, _KINDS) as paths:

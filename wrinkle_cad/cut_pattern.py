@@ -100,6 +100,33 @@ class Pattern:
             test_square=test_square,
         )
 
+    def export_svg(self, path: str | Path, *, profile: str | Path = settings.DXF_PROFILE) -> None:
+        """Writes all pieces as SVG, 1:1 in mm, with the same layers and a scale bar.
+
+        Raises:
+            InputError: an unknown profile.
+            ExportError: the file could not be written; what stood there before is untouched.
+        """
+        from .pattern.svg import write_svg
+
+        write_svg(Path(path), self.pieces, profile=profile)
+
+    def export_pdf(
+        self,
+        path: str | Path,
+        *,
+        profile: str | Path = settings.DXF_PROFILE,
+    ) -> tuple[Finding, ...]:
+        """Writes all pieces as PDF, 1:1, tiled on A4 sheets, and returns what had to be changed.
+
+        Raises:
+            InputError: an unknown profile.
+            ExportError: the file could not be written; what stood there before is untouched.
+        """
+        from .pattern.pdf import write_pdf
+
+        return write_pdf(Path(path), self.pieces, profile=profile)
+
 
 def pattern_of_strips(
     strips: Iterable[FlatStrip], piece_settings: PieceSettings | None = None

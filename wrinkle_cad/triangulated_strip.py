@@ -1,0 +1,228 @@
+"""``TriangulatedStrip``: a strip that was found, and all that is made of it."""
+
+from __future__ import annotations
+
+from functools import cached_property
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from . import settings
+from .errors import InputError
+from .findings import Finding
+from .strip.convexity import validity_matrix
+from .strip.gaps import find_gaps
+from .strip.triangulation import Triangulation, triangulate
+from .strip.unrolling import Unrolling, unroll, unroll_cones
+from .strip_report import StripReport, report_on
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+    from .cad.directrix import Directrix
+    from .cut_pattern import Pattern
+    from .pattern.options import PieceSettings
+    from .strip.sampling import Samples
+
+
+class TriangulatedStrip:
+    """A triangulated strip between two sampled directrices.
+
+    Surfaces, unrolling and report are made when first asked for. A strip does not change.
+
+    Args:
+        p: directrix P.
+        q: directrix Q, in the same direction.
+        p_samples: the samples of P.
+        q_samples: the samples of Q.
+        triangulation: of these samples.
+        tolerance: mm; the chord tolerance of the samples.
+        name: label of the surface and of the pattern.
+        color: of the surface, (red, green, blue) from 0 to 1.
+        surface: ``cones`` or ``facets``.
+        findings: what was noticed while it was made.
+    """
+
+    def __init__(
+        self,
+        p: Directrix,
+        q: Directrix,
+        p_samples: Samples,
+        q_samples: Samples,
+        triangulation: Triangulation,
+        *,
+        tolerance: float,
+        name: str,
+        color: tuple[float, float, float] = settings.STRIP_COLOR,
+        surface: str = settings.SURFACE,
+        findings: tuple[Finding, ...] = (),
+    ) -> None:
+        self.p, self.q = p, q
+        self.p_samples, self.q_samples = p_samples, q_samples
+        self.triangulation = triangulation
+        self.tolerance = tolerance
+        self.name = name
+        self.color = color
+        self.surface = surface
+        self.findings = findings
+        self._shells: dict[str, Any] = {}
+
+    def __repr__(self) -> str:
+        t = self.triangulation
+        return (
+            f"{type(self).__name__}({self.name!r}, {len(t.p)} x {len(t.q)} samples, "
+            f"{t.invalid_count} of {t.interior_count} bridges not locally convex)"
+        )
+
+    def topods_shell(self, surface: str | None = None) -> Any:
+        """The surface as the kernel's own shell, made once per kind and shared."""
+        kind = self.surface if surface is None else surface
+        check_surface(kind)
+        if kind not in self._shells:
+            from .cad.faces import build_shell
+
+            self._shells[kind] = build_shell(
+                self.triangulation, self.p, self.q, self.p_samples, self.q_samples, kind
+            )
+        return self._shells[kind]
+
+    def shell(self, surface: str | None = None) -> Any:
+        """The surface as a build123d ``Shell`` with its label and colour.
+
+        Args:
+            surface: ``cones`` or ``facets``; the strip's own when None.
+
+        Raises:
+            CadError: the kernel could not build a valid shell.
+        """
+        from .cad.guests import to_build123d
+
+        return to_build123d(self.topods_shell(surface), label=self.name, color=self.color)
+
+    @cached_property
+    def unrolling(self) -> Unrolling:
+        """The strip laid flat: cones or facets, as the strip's surface is."""
+        if self.surface == "facets":
+            return unroll(self.triangulation)
+        return unroll_cones(
+            self.triangulation,
+            self.p_samples,
+            self.q_samples,
+            self.p.point_at,
+            self.q.point_at,
+            tolerance=self.tolerance,
+        )
+
+    @cached_property
+    def valid(self) -> NDArray[np.bool_]:
+        """The validity matrix, (m, n) bool: which bridges are locally convex."""
+        return validity_matrix(
+            self.p_samples.points, self.q_samples.points, planarity=self.triangulation.planarity
+        )
+
+    @cached_property
+    def least_bending(self) -> Triangulation:
+        """The triangulation that bends least, whatever its validity (GMBT)."""
+        return triangulate(
+            self.p_samples.points,
+            self.q_samples.points,
+            criteria=("bending",),
+            energy=self.triangulation.energy,
+            planarity=self.triangulation.planarity,
+        )
+
+    @cached_property
+    def local(self) -> Triangulation:
+        """What the local search finds (LODT and LMBT)."""
+        return triangulate(
+            self.p_samples.points,
+            self.q_samples.points,
+            criteria=("invalid", "bending"),
+            search="local",
+            energy=self.triangulation.energy,
+            planarity=self.triangulation.planarity,
+        )
+
+    @cached_property
+    def report(self) -> StripReport:
+        """The strip's numbers."""
+        from .cad.kernel import area_of, faces_of
+
+        return report_on(
+            self.name,
+            self.triangulation,
+            self.unrolling,
+            area_mm2=area_of(self.topods_shell()),
+            face_count=len(faces_of(self.topods_shell())),
+            lengths_mm=self._rail_lengths(),
+            least_bending=self.least_bending.bending,
+            gaps=find_gaps(self.triangulation),
+        )
+
+    def _rail_lengths(self) -> tuple[float, float]:
+        if self.surface == "cones":
+            return self.p.length, self.q.length
+        chords = (np.diff(rail, axis=0) for rail in (self.triangulation.p, self.triangulation.q))
+        p_mm, q_mm = (float(np.linalg.norm(chord, axis=1).sum()) for chord in chords)
+        return p_mm, q_mm
+
+    def pattern(self, piece_settings: PieceSettings | None = None) -> Pattern:
+        """The flat pattern.
+
+        Args:
+            piece_settings: allowances, notches, texts and the rest; the defaults when None.
+
+        Raises:
+            InputError: the flat strip covers itself and the settings forbid to split it.
+        """
+        from .cut_pattern import pattern_of_strips
+
+        return pattern_of_strips([self], piece_settings)
+
+    def plot_validity(self, ax: Axes) -> Axes:
+        """Draws the validity matrix with this strip's path and the local one's."""
+        from .report.figures import plot_validity
+
+        return plot_validity(ax, self.valid, self.triangulation, others=(self.local,))
+
+    def plot_energy(self, ax: Axes) -> Axes:
+        """Draws the bending energy along the strip beside the local and the least-bending one."""
+        from .report.figures import plot_energy
+
+        return plot_energy(ax, self.triangulation, (self.local, self.least_bending))
+
+    def plot_pattern(self, ax: Axes, piece_settings: PieceSettings | None = None) -> Axes:
+        """Draws the pattern to scale on matplotlib axes; the settings are those of ``pattern``."""
+        from .report.figures import plot_pattern
+
+        return plot_pattern(ax, self.pattern(piece_settings).pieces)
+
+    def export_step(self, path: str | Path, *, schema: str = settings.STEP_SCHEMA) -> None:
+        """Writes the surface as STEP.
+
+        Raises:
+            ExportError: the file could not be written; what stood there before is untouched.
+        """
+        from .cad.shapes import Part
+        from .cad.write import write_step
+
+        part = Part(self.topods_shell(), self.name, self.color)
+        write_step(Path(path), [part], schema=schema)
+
+    def export_stl(self, path: str | Path) -> None:
+        """Writes the surface as binary STL, meshed to the strip's tolerance.
+
+        Raises:
+            ExportError: the file could not be written; what stood there before is untouched.
+        """
+        from .cad.write import write_stl
+
+        write_stl(Path(path), self.topods_shell(), tolerance=self.tolerance)
+
+
+def check_surface(surface: str) -> None:
+    """Raises an ``InputError`` unless the kind of surface is known."""
+    if surface not in settings.SURFACES:
+        raise InputError(f"surface - {surface!r} - one of {', '.join(settings.SURFACES)}")
