@@ -132,7 +132,9 @@ class Skeleton:
         piece = int(rail.piece_at(np.array([(first + last) / 2.0]))[0])
         if rail.pieces[piece].degree == 1 or not self._has_curves:
             return self._line(start, end)
-        part = sub_curve(rail.curves[piece], first, last)
+        # Sampling skips edges shorter than its shortest chord; a bank then starts in such an edge.
+        low, high = (float(knot) for knot in rail.pieces[piece].knots[[0, -1]])
+        part = sub_curve(rail.curves[piece], max(first, low), min(last, high))
         ends = self.points[[start, end]]
         return (curved_edge(part, self.vertex(start), self.vertex(end), ends),)
 
