@@ -125,7 +125,7 @@ def summary_of(
         "schema_version": 1,
         "input": {"file": "vamp.step", "format": "STEP", "unit": "mm"},
         "settings": {"tolerance": 0.05, "surface": "cones", "criteria": ["invalid", "bending"]},
-        "versions": {"wrinkle_cad": "0.1.0", "numpy": "2.1.0"},
+        "versions": {"wrinkle-cad": "0.1.0", "numpy": "2.1.0"},
         "strips": entries,
         "verdict": judge(entries, limits or Limits()).as_json(),
         "findings": [

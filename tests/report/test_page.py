@@ -97,6 +97,8 @@ def test_no_number_of_a_strip_stands_on_the_page_without_its_path(
         and part.tag in ("td", "dd", "small")
         and re.search(r"\d", part.text)
         and part.attributes.get("class") not in ("name", "text")
+        and "0.1.0" not in part.text
+        and "2.1.0" not in part.text
     ]
     assert loose == []
 
@@ -223,7 +225,7 @@ def test_all_tables_of_a_stitched_job_are_there(good_view: StripView) -> None:
     titles = [part.text for part in PageReader(html).all("h2")]
     assert titles == [
         "In space", "Validity matrix", "Along the strip", "Flat pattern", "Findings", "Strips",
-        "Seams and areas", "Sewn to the body", "Settings", "Seconds", "Versions",
+        "Seams and areas", "Sewn to the body", "Versions", "Seconds", "Settings",
     ]  # fmt: skip
     assert unequal_numbers(html, summary) == []
 

@@ -74,7 +74,7 @@ def page_of(title: str, main: Element, scripts: Sequence[Element]) -> str:
 def _header(numbers: Numbers) -> list[Element]:
     made = ", ".join(
         f"{what} {numbers.get(path)}"
-        for what, path in (("wrinkle_cad", "/versions/wrinkle_cad"), ("unit", "/input/unit"))
+        for what, path in (("wrinkle_cad", "/versions/wrinkle-cad"), ("unit", "/input/unit"))
         if numbers.get(path)
     )
     return [

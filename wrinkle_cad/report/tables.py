@@ -63,9 +63,8 @@ def tables_panel(numbers: Numbers) -> list[Element]:
     small = [
         _seams_card(numbers),
         _stitch_card(numbers),
-        _pairs_card(numbers, "Settings", "/settings"),
-        _pairs_card(numbers, "Seconds", "/seconds", unit="s", digits=3),
         _pairs_card(numbers, "Versions", "/versions"),
+        _pairs_card(numbers, "Seconds", "/seconds", unit="s", digits=3),
     ]
     return [
         card
@@ -74,6 +73,7 @@ def tables_panel(numbers: Numbers) -> list[Element]:
             _findings_card(numbers),
             _strips_card(numbers),
             node("div", *(card for card in small if card is not None), class_="tables"),
+            _pairs_card(numbers, "Settings", "/settings"),
         )
         if card is not None
     ]
@@ -101,7 +101,7 @@ def cell(*content: Child, right: bool = False, kind: str = "") -> Element:
     Args:
         content: what stands in it.
         right: whether it holds a number.
-        kind: ``name`` (any length), ``word`` (never broken), ``text`` (sentences), ``field``.
+        kind: ``name`` (any length), ``word`` (never broken), ``text`` (sentences).
     """
     return node("td", *content, **({"class_": kind} if kind else _number_class(right)))
 
@@ -266,6 +266,7 @@ def _stitch_card(numbers: Numbers) -> Element | None:
 def _pairs_card(
     numbers: Numbers, title: str, path: str, *, unit: str = "", digits: int | None = None
 ) -> Element | None:
+    """Names and values as a list that flows into as many columns as fit."""
     pairs = numbers.get(path)
     if not pairs:
         return None
@@ -275,8 +276,8 @@ def _pairs_card(
             continue
         is_number = isinstance(value, int | float) and not isinstance(value, bool)
         shown = numbers.show(f"{path}/{key}", unit, digits) if is_number else _words(value)
-        rows.append(node("tr", cell(key.replace("_", " "), kind="field"), cell(shown, kind="name")))
-    return _card(title, table((("", False), ("", False)), rows))
+        rows.append(node("div", node("dt", key.replace("_", " ")), node("dd", shown)))
+    return _card(title, node("dl", *rows, class_="pairs"))
 
 
 def _words(value: Any) -> str:
