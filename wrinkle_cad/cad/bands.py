@@ -64,8 +64,14 @@ class Band:
 
     name: str
     """``P`` or ``Q``: the rail that it closes up to."""
-    side: Directrix
-    """The opening's boundary."""
+    p: Directrix
+    """Its rail along P: the opening's boundary or the profile."""
+    q: Directrix
+    """Its rail along Q, in the same direction."""
+    p_samples: Samples
+    """The samples of its rail along P."""
+    q_samples: Samples
+    """The samples of its rail along Q."""
     triangulation: Triangulation
     """The band, as triangles."""
     shell: TopoDS_Shell
@@ -126,7 +132,7 @@ def make_band(
     triangulation = _triangulated(*sampled, settings.planarity_from(tolerance))
     _check_folds(triangulation, name, width)
     shell = build_shell(triangulation, *rails, *sampled, settings.SURFACE)
-    return Band(name, side, triangulation, shell, width)
+    return Band(name, *rails, *sampled, triangulation, shell, width)
 
 
 def _triangulated(p: Samples, q: Samples, planarity: float) -> Triangulation:
@@ -148,9 +154,7 @@ def _distances(points: Floats, side: Directrix) -> Floats:
     gaps = np.empty(len(points))
     for i, point in enumerate(points):
         share = np.clip(((point - line[:-1]) * chord).sum(axis=1) / square, 0.0, 1.0)
-        foot = np.interp(
-            np.arange(len(share)) + share, np.arange(len(parameters)), parameters
-        )
+        foot = np.interp(np.arange(len(share)) + share, np.arange(len(parameters)), parameters)
         nearest = int(np.linalg.norm(line[:-1] + share[:, None] * chord - point, axis=1).argmin())
         at = side.point_at(foot[nearest : nearest + 1])[0]
         gaps[i] = float(np.linalg.norm(at - point))

@@ -14,7 +14,6 @@ from pathlib import Path
 from typing import Final
 
 from OCP.BRepBuilderAPI import BRepBuilderAPI_Copy, BRepBuilderAPI_Transform
-from OCP.BRepMesh import BRepMesh_IncrementalMesh
 from OCP.BRepTools import BRepTools
 from OCP.IFSelect import IFSelect_RetDone
 from OCP.STEPCAFControl import STEPCAFControl_Writer
@@ -30,6 +29,7 @@ from wrinkle_cad.atomic import write_atomically
 from wrinkle_cad.errors import CadError, ExportError
 
 from .kernel import faces_of, kernel_step
+from .mesh import meshed_copy
 from .shapes import Part
 from .step_bytes import Header, finished_text, placeholder
 from .xde import new_document, printable, set_name, set_parameter, silence_kernel
@@ -192,11 +192,7 @@ def stl_bytes(
         raise CadError("mesh the shape", "it has no faces - pass a face, shell or solid")
     silence_kernel()
     with kernel_step("mesh the shape"):
-        # A mesh is stored in the shape, and whoever owns the shape did not ask for one.
-        own = BRepBuilderAPI_Copy(shape, True, False).Shape()
-        BRepTools.Clean_s(own)
-        sag = settings.MESH_SAG_PER_TOLERANCE * tolerance
-        BRepMesh_IncrementalMesh(own, sag, False, angular_tolerance, False)
+        own = meshed_copy(shape, tolerance, angular_tolerance)
         writer = StlAPI_Writer()
         writer.ASCIIMode = False
         with tempfile.TemporaryDirectory(prefix="wrinkle-cad-") as folder:
