@@ -1,5 +1,7 @@
 from __future__ import annotations
 
+from itertools import pairwise
+
 import numpy as np
 import pytest
 
@@ -24,7 +26,7 @@ def test_gaps_are_the_runs_of_invalid_interior_bridges() -> None:
     gaps = find_gaps(found)
     numbers = [k for gap in gaps for k in range(gap.first, gap.last + 1)]
     assert numbers == (np.flatnonzero(~found.valid[1:-1]) + 1).tolist()
-    assert all(a.last + 1 < b.first for a, b in zip(gaps, gaps[1:], strict=False))
+    assert all(a.last + 1 < b.first for a, b in pairwise(gaps))
     for gap in gaps:
         assert gap.start == tuple(found.bridges[gap.first])
         assert gap.end == tuple(found.bridges[gap.last])

@@ -1,0 +1,52 @@
+from __future__ import annotations
+
+import os
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+PACKAGE = Path(__file__).parents[2] / "wrinkle_cad"
+
+CODE = """
+import numba, numpy as np
+from wrinkle_cad.strip import triangulate
+from wrinkle_cad.strip.rails import _distances
+points = np.zeros((2, 3))
+assert _distances(points, points + [[0, 0, 1], [0, 0, 2]])[0] == 1.0
+print(type(_distances._cache).__name__)
+"""
+
+
+def cache_of(folder: Path, environment: dict[str, str]) -> str:
+    """The kind of cache that compiled functions of a package in this folder have."""
+    result = subprocess.run(
+        [sys.executable, "-B", "-c", CODE],
+        cwd=folder,
+        env=environment,
+        check=True,
+        capture_output=True,
+        text=True,
+    )
+    return result.stdout.strip()
+
+
+def test_machine_code_is_kept_where_a_folder_can_be_written(tmp_path: Path) -> None:
+    environment = {
+        **os.environ,
+        "NUMBA_CACHE_DIR": str(tmp_path),
+        "PYTHONPATH": str(PACKAGE.parent),
+    }
+    assert cache_of(tmp_path, environment) == "FunctionCache"
+    assert list(tmp_path.rglob("*.nbi"))
+
+
+def test_code_is_compiled_anew_where_no_folder_can_be_written(tmp_path: Path) -> None:
+    # A file stands where the folder for machine code would be, and the home is a device: this
+    # stops the superuser too.
+    ignored = shutil.ignore_patterns("__pycache__")
+    copy = Path(shutil.copytree(PACKAGE, tmp_path / "wrinkle_cad", ignore=ignored))
+    (copy / "strip" / "__pycache__").touch()
+    unwritable = {"HOME": "/dev/null", "XDG_CACHE_HOME": "/dev/null", "PYTHONPATH": str(tmp_path)}
+    environment = {k: v for k, v in os.environ.items() if k != "NUMBA_CACHE_DIR"} | unwritable
+    assert cache_of(tmp_path, environment) == "NullCache"
