@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from OCP.GCPnts import GCPnts_AbscissaPoint
 from OCP.Geom import Geom_BSplineCurve
 from OCP.GeomAdaptor import GeomAdaptor_Curve
+from OCP.TopoDS import TopoDS_Shape
 
 from wrinkle_cad import settings
 from wrinkle_cad.errors import InputError
@@ -119,19 +120,27 @@ def make_directrix(source: object, *, name: str = "") -> Directrix:
 
 def _points_in(source: object) -> Floats | None:
     """Returns (k, 3) if the source is an array or a list of points, else None."""
-    if isinstance(source, Sequence) and not isinstance(source, str):
-        rows = [row for row in source if isinstance(row, Iterable) and not hasattr(row, "wrapped")]
-        # build123d's Vector wraps a gp_Vec, which is a point and no shape.
-        rows = rows or [
-            row for row in source if hasattr(row, "to_tuple") or hasattr(row, "toTuple")
-        ]
-        if not rows or len(rows) != len(source) or isinstance(rows[0], str):
-            return None
-        try:
-            return np.array([tuple(row) for row in rows], dtype=np.float64)
-        except (TypeError, ValueError):
-            return None
-    return np.array(source, dtype=np.float64) if isinstance(source, np.ndarray) else None
+    if isinstance(source, np.ndarray):
+        return np.array(source, dtype=np.float64)
+    if not isinstance(source, Sequence) or isinstance(source, str) or not source:
+        return None
+    rows = [_coordinates(item) for item in source]
+    if any(row is None for row in rows):
+        return None
+    try:
+        return np.array(rows, dtype=np.float64)
+    except (TypeError, ValueError):
+        return None
+
+
+def _coordinates(item: object) -> tuple[object, ...] | None:
+    """Returns the coordinates of a point: numbers in a row, or a vector of a CAD library."""
+    if isinstance(getattr(item, "wrapped", item), TopoDS_Shape) or isinstance(item, str):
+        return None
+    to_tuple = getattr(item, "toTuple", None)  # CadQuery's Vector, which cannot be iterated
+    if callable(to_tuple):
+        item = to_tuple()
+    return tuple(item) if isinstance(item, Iterable) else None
 
 
 def _polyline(points: Floats, label: str) -> PoleCurve:
