@@ -52,7 +52,8 @@ def test_the_paper_energy_of_a_roof_is_its_closed_form() -> None:
 
 def cost(angle: float, energy: str) -> tuple[float, float]:
     """A bridge of length 2 between triangles of height 1."""
-    return fold_cost(2.0, -1.0, 0.0, np.cos(angle), -np.sin(angle), 1e-13, ENERGIES[energy])
+    x, y = np.cos(angle), -np.sin(angle)
+    return fold_cost(2.0, -1.0, 0.0, 1.0, x, y, 1.0, 1e-13, ENERGIES[energy])
 
 
 def test_the_hinge_energy_grows_up_to_a_fold_of_180_degrees() -> None:

@@ -53,7 +53,15 @@ def is_degenerate(length: float, height: float, bank: float, nothing: float) -> 
 
 @compiled
 def fold_cost(
-    length: float, ax: float, ay: float, bx: float, by: float, nothing: float, energy: int
+    length: float,
+    ax: float,
+    ay: float,
+    first: float,
+    bx: float,
+    by: float,
+    second: float,
+    nothing: float,
+    energy: int,
 ) -> tuple[float, float]:
     """The cost of the fold at a bridge between two triangles that are not degenerate.
 
@@ -61,8 +69,10 @@ def fold_cost(
         length: mm; of the bridge.
         ax: mm; with ay the earlier triangle's third vertex, seen along the bridge.
         ay: mm; see ax.
+        first: mm; length of (ax, ay), the earlier triangle's height.
         bx: mm; with by the later triangle's third vertex.
         by: mm; see bx.
+        second: mm; length of (bx, by), the later triangle's height.
         nothing: mm; an offset from the other triangle's plane that is round-off.
         energy: HINGE or PAPER.
 
@@ -70,8 +80,6 @@ def fold_cost(
         The bending energy, and 1.0 if the later triangle folds back onto the earlier one, else 0.0;
         such a fold costs no (infinite) energy but is counted. `paper` knows no such folds.
     """
-    first = np.sqrt(ax * ax + ay * ay)
-    second = np.sqrt(bx * bx + by * by)
     size = first * second
     sine = abs(ay * bx - ax * by)
     cosine = -(ax * bx + ay * by)
@@ -83,7 +91,7 @@ def fold_cost(
     if cosine < 0.0 and far >= _STEEPEST * sine:
         return 0.0, 1.0
     half = sine / (size + cosine) if cosine >= 0.0 else far / sine
-    return length * (1.0 / first + 1.0 / second) * half * half, 0.0
+    return length * ((first + second) / size) * half * half, 0.0
 
 
 @compiled
@@ -121,15 +129,18 @@ def cost_row(
             is_flat = is_degenerate(length, height, banks[1 + 2 * later, j], nothing)
             degenerate[later, j] = 1.0 if is_flat else 0.0
             area[later, j] = 0.5 * length * height
-            for earlier in range(2):
-                ax, ay = view[BEFORE_P + 4 * earlier, j], view[BEFORE_P + 1 + 4 * earlier, j]
-                arm = np.sqrt(ax * ax + ay * ay)
+        for earlier in range(2):
+            ax, ay = view[BEFORE_P + 4 * earlier, j], view[BEFORE_P + 1 + 4 * earlier, j]
+            arm = np.sqrt(ax * ax + ay * ay)
+            is_flat = is_degenerate(length, arm, banks[2 * earlier, j], nothing)
+            for later in range(2):
                 row = 2 * earlier + later
-                bending[row, j] = 0.0
-                fold_backs[row, j] = 0.0
-                if not is_flat and not is_degenerate(length, arm, banks[2 * earlier, j], nothing):
+                bending[row, j] = fold_backs[row, j] = 0.0
+                if not is_flat and degenerate[later, j] == 0.0:
+                    bx, by = view[NEXT_P + 4 * later, j], view[NEXT_P + 1 + 4 * later, j]
+                    height = np.sqrt(bx * bx + by * by)
                     bending[row, j], fold_backs[row, j] = fold_cost(
-                        length, ax, ay, bx, by, nothing, energy
+                        length, ax, ay, arm, bx, by, height, nothing, energy
                     )
 
 
