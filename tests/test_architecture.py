@@ -35,6 +35,8 @@ LAYER = {
     "job_parts": 9,
     "outputs": 9,
     "summary": 10,
+    "wrinkled_upper": 10,
+    "writing": 10.5,
     "workflow": 11,
     "inspection": 11,
     "comparison": 11,

@@ -87,6 +87,12 @@ SURFACES: Final = ("cones", "facets")
 SURFACE: Final = "cones"
 STRIP_COLOR: Final = (0.80, 0.52, 0.25)
 """Leather: red, green, blue from 0 to 1."""
+UPPER_COLOR: Final = (0.72, 0.72, 0.70)
+"""Light grey, so that the wrinkle stands out."""
+VIEW_SAG: Final = 0.1
+"""mm; how far the triangles of the page's body may lie from its faces."""
+VIEW_ANGLE: Final = 0.35
+"""rad; how far the normals of its neighbouring triangles may differ."""
 STEP_SCHEMA: Final = "AP214"
 
 CONFUSION: Final = 1e-7

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass, fields
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 
@@ -14,6 +14,8 @@ from .report.material import smallest_bend_radius
 from .strip.gaps import Gap, covered_lengths
 from .strip.triangulation import Triangulation
 from .strip.unrolling import Unrolling
+
+Role = Literal["strip", "band"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -32,6 +34,8 @@ class StripReport:
 
     name: str
     """The strip's name."""
+    role: Role
+    """``strip``, or ``band`` between a strip and the body."""
     samples_p: int
     """Samples of directrix P."""
     samples_q: int
@@ -87,6 +91,7 @@ def report_on(
     triangulation: Triangulation,
     unrolling: Unrolling,
     *,
+    role: Role,
     area_mm2: float,
     face_count: int,
     lengths_mm: tuple[float, float],
@@ -100,6 +105,7 @@ def report_on(
         name: the strip's name.
         triangulation: of the strip.
         unrolling: of the same triangulation.
+        role: of the strip.
         area_mm2: of the surface in space.
         face_count: of the same surface.
         lengths_mm: of the directrices P and Q in space.
@@ -113,6 +119,7 @@ def report_on(
     p_invalid, q_invalid = covered_lengths(triangulation, failed)
     return StripReport(
         name=name,
+        role=role,
         samples_p=len(triangulation.p),
         samples_q=len(triangulation.q),
         interior_bridges=triangulation.interior_count,

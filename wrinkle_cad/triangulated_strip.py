@@ -16,7 +16,7 @@ from .strip.convexity import validity_matrix
 from .strip.gaps import find_gaps
 from .strip.triangulation import Triangulation, triangulate
 from .strip.unrolling import Unrolling, unroll, unroll_cones
-from .strip_report import StripReport, report_on
+from .strip_report import Role, StripReport, report_on
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -42,6 +42,7 @@ class TriangulatedStrip:
         name: label of the surface and of the pattern.
         color: of the surface, (red, green, blue) from 0 to 1.
         surface: ``cones`` or ``facets``.
+        role: ``strip``, or ``band`` between a strip and the body.
         findings: what was noticed while it was made.
     """
 
@@ -57,6 +58,7 @@ class TriangulatedStrip:
         name: str,
         color: tuple[float, float, float] = settings.STRIP_COLOR,
         surface: str = settings.SURFACE,
+        role: Role = "strip",
         findings: tuple[Finding, ...] = (),
     ) -> None:
         self.p, self.q = p, q
@@ -66,6 +68,7 @@ class TriangulatedStrip:
         self.name = name
         self.color = color
         self.surface = surface
+        self.role: Role = role
         self.findings = findings
         self._shells: dict[str, Any] = {}
 
@@ -154,6 +157,7 @@ class TriangulatedStrip:
             self.name,
             self.triangulation,
             self.unrolling,
+            role=self.role,
             area_mm2=area_of(self.topods_shell()),
             face_count=len(faces_of(self.topods_shell())),
             lengths_mm=self._rail_lengths(),

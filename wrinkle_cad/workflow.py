@@ -2,30 +2,29 @@
 
 from __future__ import annotations
 
-import datetime
 import traceback
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
 from .cad.loading import kernel_importable
-from .errors import WrinkleError
+from .errors import JobError, WrinkleError
 from .findings import Finding
 from .job import Job
-from .job_parts import limits_of, output_kinds, piece_settings_of, strip_of, write_pattern
 from .outcome import JobDone, JobFailed, Progress
-from .outputs import check_outputs_are_ours, hashes_of, outputs_together
+from .outputs import check_outputs_are_ours, hashes_of, output_paths, outputs_together
 from .phases import PhaseClock
 from .summary import summary_of, to_json
 
 if TYPE_CHECKING:
     from .cad.choose import Chosen
     from .cad.shapes import CadFile
-    from .cut_pattern import Pattern
     from .strip_report import StripReport
-    from .wrinkle import WrinkleStrip
+    from .triangulated_strip import TriangulatedStrip
+    from .writing import Made
 
 _PHASES: Final = ("read", "strip", "surface", "pattern", "judge", "write", "page")
+_NOT_HASHED: Final = ("json", "html")
 
 
 def run_job(job: Job, *, progress: Progress | None = None) -> JobDone | JobFailed:
@@ -63,22 +62,10 @@ def _one_line_of(error: Exception, job: Job) -> str:
 def _run(job: Job, clock: PhaseClock) -> JobDone:
     with clock.phase("read"):
         file, chosen = _read(job)
-    with clock.phase("strip"):
-        from .cut_pattern import pattern_of_strips
-
-        limits = limits_of(job)
-        chosen_pieces = piece_settings_of(job, limits)
-        strips = _make_strips(job, chosen)
-    with clock.phase("surface"):
-        for strip in strips:
-            strip.topods_shell()
-    with clock.phase("pattern"):
-        pattern = pattern_of_strips(strips, chosen_pieces)
+    made = _make(job, chosen, clock)
     with clock.phase("judge"):
-        noticed = [finding for strip in strips for finding in findings_on(strip, strip.report)]
-        noticed += pattern.findings
-        summary = summary_of(job, file, chosen, [s.report for s in strips], noticed, limits)
-    outputs = _write(job, clock, strips, pattern, summary)
+        summary = _judged(job, file, chosen, made)
+    outputs = _write(job, made, summary, clock)
     return JobDone(
         job=job,
         outputs=outputs,
@@ -93,16 +80,64 @@ def _read(job: Job) -> tuple[CadFile, Chosen]:
     with kernel_importable():
         from .cad.choose import choose_inputs
         from .cad.read import read_cad
+    from .job_parts import output_kinds
+
     check_outputs_are_ours(job, output_kinds(job))
     file = read_cad(job.input, unit=job.unit)
     return file, choose_inputs(file, p=job.p, q=job.q, upper=job.upper)
 
 
-def _make_strips(job: Job, chosen: Chosen) -> list[WrinkleStrip]:
-    return [strip_of(job, given.p.shape, given.q.shape, given.name) for given in chosen.strips]
+def _make(job: Job, chosen: Chosen, clock: PhaseClock) -> Made:
+    from .cut_pattern import pattern_of_strips
+    from .job_parts import limits_of, piece_settings_of, strip_of
+    from .writing import Made
+
+    with clock.phase("strip"):
+        piece_settings = piece_settings_of(job, limits_of(job))
+        upper = None
+        if chosen.upper is not None:
+            from .wrinkled_upper import wrinkle_upper
+
+            upper = wrinkle_upper(job, chosen)
+            strips: tuple[TriangulatedStrip, ...] = (*upper.strips, *upper.bands)
+        else:
+            _check_no_waves(job)
+            strips = tuple(
+                strip_of(job, given.p.shape, given.q.shape, given.name) for given in chosen.strips
+            )
+    with clock.phase("surface"):
+        for strip in strips:
+            strip.topods_shell()
+    with clock.phase("pattern"):
+        pattern = pattern_of_strips(strips, piece_settings)
+    name = "" if chosen.upper is None else chosen.upper.name
+    return Made(strips, pattern, upper, name or job.name)
 
 
-def findings_on(strip: WrinkleStrip, report: StripReport) -> Iterator[Finding]:
+def _check_no_waves(job: Job) -> None:
+    if job.waves is not None:
+        raise JobError(
+            f"waves - {job.input.name} has no upper to stand on - a shell or face named 'upper' -"
+            " add it, name it with --upper, or leave --waves and --height out"
+        )
+
+
+def _judged(job: Job, file: CadFile, chosen: Chosen, made: Made) -> dict[str, Any]:
+    from .job_parts import limits_of
+
+    findings = [
+        *(made.upper.findings if made.upper is not None else ()),
+        *(finding for strip in made.strips for finding in findings_on(strip, strip.report)),
+        *made.pattern.findings,
+    ]
+    reports = [strip.report for strip in made.strips]
+    summary = summary_of(job, file, chosen, reports, findings, limits_of(job))
+    if made.upper is not None:
+        summary["stitch"] = made.upper.stitch_as_json()
+    return summary
+
+
+def findings_on(strip: TriangulatedStrip, report: StripReport) -> Iterator[Finding]:
     """What the user should know about a strip."""
     yield from strip.findings
     invalid = report.invalid_bridges - report.inflection_bridges
@@ -117,62 +152,19 @@ def findings_on(strip: WrinkleStrip, report: StripReport) -> Iterator[Finding]:
         )
 
 
-def _write(
-    job: Job,
-    clock: PhaseClock,
-    strips: Sequence[WrinkleStrip],
-    pattern: Pattern,
-    summary: dict[str, Any],
-) -> tuple[Path, ...]:
+def _write(job: Job, made: Made, summary: dict[str, Any], clock: PhaseClock) -> tuple[Path, ...]:
+    from .job_parts import output_kinds
+    from .writing import page_of, write_flat, write_shapes
+
     kinds = output_kinds(job)
     with outputs_together(job, kinds) as paths:
         with clock.phase("write"):
-            _write_shapes(job, strips, paths)
-            changed = write_pattern(job, pattern, paths, timestamp_of(job))
-            summary["findings"] += changed
-            hashed = [kind for kind in kinds if kind not in ("json", "html")]
-            summary["outputs"] = hashes_of({kind: paths[kind] for kind in hashed})
+            write_shapes(job, made, paths)
+            summary["findings"] += write_flat(job, made, paths)
+            hashed = {kind: paths[kind] for kind in kinds if kind not in _NOT_HASHED}
+            summary["outputs"] = hashes_of(hashed)
         with clock.phase("page"):
-            page = _page(summary, strips, pattern)
-            paths["html"].write_text(page, encoding="utf-8")
+            paths["html"].write_text(page_of(made, summary), encoding="utf-8")
         summary["seconds"] = {phase: round(took, 3) for phase, took in clock.seconds.items()}
         paths["json"].write_text(to_json(summary), encoding="utf-8")
-    return tuple(job.output_dir / f"{job.name}.{kind}" for kind in kinds)
-
-
-def _write_shapes(job: Job, strips: Sequence[WrinkleStrip], paths: Mapping[str, Path]) -> None:
-    from .cad.kernel import make_compound
-    from .cad.shapes import Part
-    from .cad.write import write_step, write_stl
-
-    parts = [Part(strip.topods_shell(), strip.name, strip.color) for strip in strips]
-    write_step(paths["step"], parts, schema=job.step_schema, timestamp=timestamp_of(job))
-    meshed = make_compound([part.shape for part in parts])
-    write_stl(paths["stl"], meshed, tolerance=job.tolerance)
-
-
-def _page(summary: Mapping[str, Any], strips: Sequence[WrinkleStrip], pattern: Pattern) -> str:
-    from .report.page import write_page
-    from .report.views import StripView
-
-    views = [
-        StripView(
-            name=strip.name,
-            triangulation=strip.triangulation,
-            unrolling=strip.unrolling,
-            pieces=pattern.pieces_of(index),
-            valid=strip.valid,
-            local=strip.local,
-            least_bending=strip.least_bending,
-            gaps=strip.report.gaps,
-        )
-        for index, strip in enumerate(strips)
-    ]
-    return write_page(summary, views)
-
-
-def timestamp_of(job: Job) -> datetime.datetime:
-    """The time that stands in the outputs."""
-    if job.source_date_epoch is None:
-        return datetime.datetime.now(datetime.UTC).replace(microsecond=0)
-    return datetime.datetime.fromtimestamp(job.source_date_epoch, datetime.UTC)
+    return tuple(output_paths(job, kinds).values())

@@ -63,7 +63,7 @@ class Band:
     """The strip between one side of an opening and one profile."""
 
     name: str
-    """``P`` or ``Q``: the rail that it closes up to."""
+    """``P`` or ``Q``, the rail that it closes up to; in a stitched upper after its strip's name."""
     p: Directrix
     """Its rail along P: the opening's boundary or the profile."""
     q: Directrix

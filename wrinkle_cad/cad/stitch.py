@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import pairwise
 from typing import Any
 
@@ -68,6 +68,13 @@ class Stitched:
     """The shell's faces by what they are: ``body``, then per strip its name and bands."""
     source: Any
     """The object that the upper came in."""
+
+    @property
+    def shell(self) -> Any:
+        """The shell as build123d has it, with the upper's name and colour."""
+        from .likeness import alike
+
+        return alike(self.shell_shape, self.source, "upper")
 
 
 def stitch(
@@ -137,7 +144,7 @@ def _all_faces(
                 edges, profile, samples, rail, tolerance=tolerance, is_first=rail == "P"
             )
             if band is not None:
-                bands.append(band)
+                bands.append(replace(band, name=f"{name} band {rail}"))
                 pieces.append((f"{name} band {rail}", kernel.faces_of(band.shell)))
         for at, edges in ((0, opening.start_edges), (1, opening.end_edges)):
             bridge = np.array([strip.p_samples.points[-at], strip.q_samples.points[-at]])

@@ -1,0 +1,150 @@
+"""Fig. 11 for one job: carves the upper, designs or takes the profiles, stitches them in."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, cast
+
+from . import settings
+from .findings import Finding
+from .job import Job
+from .job_parts import strip_of
+from .triangulated_strip import TriangulatedStrip
+from .wrinkle import WrinkleStrip
+
+if TYPE_CHECKING:
+    from .cad.choose import Chosen, StripInput
+    from .cad.opening import Opening
+    from .cad.profiles import Direction
+    from .cad.stitch import Stitched
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class WrinkledUpper:
+    """An upper with its wrinkles stitched in."""
+
+    openings: tuple[Opening, ...]
+    """What was carved, in the order of the strips."""
+    strips: tuple[WrinkleStrip, ...]
+    """The wrinkles."""
+    bands: tuple[TriangulatedStrip, ...]
+    """The strips between the openings' boundaries and the wrinkles."""
+    stitched: Stitched
+    """The shell and its report."""
+
+    @property
+    def findings(self) -> tuple[Finding, ...]:
+        """What the user should know about the carving."""
+        return tuple(
+            Finding(
+                "rail-off-upper",
+                "info",
+                f"{strip.name} - {rail} was {distance:.3f} mm from the upper at most -"
+                f" {settings.RAIL_OFF_UPPER:g} mm is the limit - it was projected onto it",
+            )
+            for opening, strip in zip(self.openings, self.strips, strict=True)
+            for rail, distance in zip("PQ", opening.distances, strict=True)
+            if distance > strip.tolerance
+        )
+
+    def stitch_as_json(self) -> dict[str, Any]:
+        """The stitching as plain values, as it stands in NAME.json."""
+        report = self.stitched.report
+        return {
+            "faces": report.face_count,
+            "free_edges_before": report.free_edges_before,
+            "free_edges_after": report.free_edges_after,
+            "free_length_before_mm": report.free_length_before_mm,
+            "free_length_after_mm": report.free_length_after_mm,
+            "max_edge_tolerance_mm": report.max_edge_tolerance_mm,
+            "area_balance_mm2": report.area_balance_mm2,
+            "area_mm2": report.area_mm2,
+            "is_valid": report.is_valid,
+            "seams": [
+                {
+                    "seam": seam.seam,
+                    "length_mm": seam.length_mm,
+                    "mean_deg": math.degrees(seam.mean),
+                    "largest_deg": math.degrees(seam.largest),
+                }
+                for seam in report.seams
+            ],
+        }
+
+
+def wrinkle_upper(job: Job, chosen: Chosen) -> WrinkledUpper:
+    """Carves the upper along every strip's rails and stitches the wrinkles in.
+
+    With ``job.waves`` the profiles are designed from the rails on the upper; without, P and Q of
+    the file are the profiles.
+
+    Args:
+        job: the settings.
+        chosen: the rails and the upper.
+
+    Raises:
+        InputError: a rail or a profile does not fit the upper.
+        CadError: the parts do not become one valid shell.
+    """
+    from .cad.stitch import stitch
+
+    assert chosen.upper is not None
+    body = chosen.upper.shape
+    openings: list[Opening] = []
+    strips: list[WrinkleStrip] = []
+    for given in chosen.strips:
+        opening = _carved(job, body, given)
+        p, q = _profiles(job, opening, given)
+        openings.append(opening)
+        strips.append(strip_of(job, p, q, given.name))
+        body = opening.body_shape
+    stitched = stitch(openings, strips, tolerance=job.tolerance)
+    return WrinkledUpper(tuple(openings), tuple(strips), _bands(job, stitched), stitched)
+
+
+def _carved(job: Job, body: object, given: StripInput) -> Opening:
+    from .cad.carve import carve
+
+    rails = (given.p.shape, given.q.shape)
+    options: dict[str, Any] = {"fade": job.fade, "allow_split": job.allow_split}
+    if job.margin is not None:
+        return carve(body, *rails, margin=job.margin, **options)
+    if job.height is not None:
+        return carve(body, *rails, margin=max(abs(height) for height in job.height), **options)
+    # Drawn profiles: bands as wide as the profiles are high lie at 45 degrees.
+    opening = carve(body, *rails, margin=0.0, **options)
+    highest = max(opening.distances)
+    return opening if highest <= job.tolerance else carve(body, *rails, margin=highest, **options)
+
+
+def _profiles(job: Job, opening: Opening, given: StripInput) -> tuple[object, object]:
+    if job.waves is None or job.height is None:
+        return given.p.shape, given.q.shape
+    from .cad.profiles import profile_curves
+
+    p_phase, q_phase = job.phase_deg or settings.WAVE_PHASES
+    return profile_curves(
+        opening,
+        waves=job.waves,
+        height=job.height,
+        phase=(math.radians(p_phase), math.radians(q_phase)),
+        fade=job.fade,
+        side=cast("Direction", job.side),
+    )
+
+
+def _bands(job: Job, stitched: Stitched) -> tuple[TriangulatedStrip, ...]:
+    return tuple(
+        TriangulatedStrip(
+            band.p,
+            band.q,
+            band.p_samples,
+            band.q_samples,
+            band.triangulation,
+            tolerance=job.tolerance,
+            name=band.name,
+            role="band",
+        )
+        for band in stitched.report.bands
+    )

@@ -1,0 +1,119 @@
+"""The outputs of one job, written into the paths that are given."""
+
+from __future__ import annotations
+
+import datetime
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from . import settings
+from .job import Job
+from .job_parts import write_pattern
+from .triangulated_strip import TriangulatedStrip
+
+if TYPE_CHECKING:
+    from .cad.shapes import Part
+    from .cut_pattern import Pattern
+    from .report.views import MeshView
+    from .wrinkled_upper import WrinkledUpper
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Made:
+    """What a job has made before it writes."""
+
+    strips: tuple[TriangulatedStrip, ...]
+    """The wrinkles, then the bands."""
+    pattern: Pattern
+    """The pieces of all of them."""
+    upper: WrinkledUpper | None
+    """The upper with the wrinkles stitched in; None when the file has no upper."""
+    upper_name: str = ""
+    """What the file calls the upper."""
+
+
+def write_shapes(job: Job, made: Made, paths: Mapping[str, Path]) -> None:
+    """Writes the STEP and the STL file.
+
+    Raises:
+        ExportError: a file cannot be written.
+    """
+    from .cad.kernel import make_compound
+    from .cad.write import write_step, write_stl
+
+    parts = _parts_of(made)
+    write_step(paths["step"], parts, schema=job.step_schema, timestamp=timestamp_of(job))
+    shapes = [part.shape for part in parts]
+    meshed = shapes[0] if len(shapes) == 1 else make_compound(shapes)
+    write_stl(paths["stl"], meshed, tolerance=job.tolerance)
+
+
+def write_flat(job: Job, made: Made, paths: Mapping[str, Path]) -> list[dict[str, str]]:
+    """Writes the pattern's files and returns what had to be changed, as plain values.
+
+    Raises:
+        InputError: a profile cannot be used.
+        ExportError: a file cannot be written.
+    """
+    return write_pattern(job, made.pattern, paths, timestamp_of(job))
+
+
+def page_of(made: Made, summary: Mapping[str, Any]) -> str:
+    """The job's page."""
+    from .report.page import write_page
+    from .report.views import StripView
+
+    views = [
+        StripView(
+            name=strip.name,
+            triangulation=strip.triangulation,
+            unrolling=strip.unrolling,
+            pieces=made.pattern.pieces_of(index),
+            valid=strip.valid,
+            local=strip.local,
+            least_bending=strip.least_bending,
+            gaps=strip.report.gaps,
+            role=strip.role,
+        )
+        for index, strip in enumerate(made.strips)
+    ]
+    return write_page(summary, views, _body_view(made))
+
+
+def timestamp_of(job: Job) -> datetime.datetime:
+    """The time that stands in the outputs."""
+    if job.source_date_epoch is None:
+        return datetime.datetime.now(datetime.UTC).replace(microsecond=0)
+    return datetime.datetime.fromtimestamp(job.source_date_epoch, datetime.UTC)
+
+
+def _parts_of(made: Made) -> Sequence[Part]:
+    from .cad.shapes import Part
+
+    if made.upper is not None:
+        return [Part(made.upper.stitched.shell_shape, made.upper_name, settings.UPPER_COLOR)]
+    return [Part(strip.topods_shell(), strip.name, strip.color) for strip in made.strips]
+
+
+def _body_view(made: Made) -> MeshView | None:
+    if made.upper is None:
+        return None
+    import numpy as np
+
+    from .cad.kernel import make_compound
+    from .cad.mesh import mesh_of
+    from .report.views import MeshView
+
+    strips = {strip.name for strip in made.strips}
+    faces = [face for name, own in made.upper.stitched.parts if name not in strips for face in own]
+    points, triangles = mesh_of(
+        make_compound(faces), tolerance=settings.VIEW_SAG, angular_tolerance=settings.VIEW_ANGLE
+    )
+    return MeshView(
+        name=made.upper_name or "body",
+        vertices=points.astype(np.float32),
+        faces=triangles.astype(np.int32),
+        color=settings.UPPER_COLOR,
+    )
