@@ -83,13 +83,14 @@ def plot_energy(
         ax.plot(along(other)[1:-1], other.bending_at, dash, color=color, label=_label(other))
     at = along(triangulation)
     ax.plot(at[1:-1], triangulation.bending_at, color=VALID_COLOR, label=_label(triangulation))
-    energies = triangulation.bending_at[triangulation.bending_at > 0.0]
-    if len(energies) and energies.max() > 100.0 * float(np.median(energies)):
-        ax.set_yscale("symlog", linthresh=float(np.median(energies)))
+    own = triangulation.bending_at[triangulation.bending_at > 0.0]
+    highest = max(float(strip.bending_at.max(initial=0.0)) for strip in (triangulation, *others))
+    if len(own) and highest > 100.0 * float(np.median(own)):
+        ax.set_yscale("symlog", linthresh=float(np.median(own)))
     _mark_invalid(ax, triangulation, at, np.zeros_like(at))
     ax.set_xlabel("mm along the strip")
     ax.set_ylabel("bending energy at each bridge")
-    ax.legend(loc="best", frameon=False)
+    ax.legend(loc="best", fontsize="small", framealpha=0.85)
     return ax
 
 
