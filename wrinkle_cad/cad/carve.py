@@ -74,7 +74,8 @@ def carve(
 
 def carve_shape(shape: TopoDS_Shape, request: CarveRequest, *, source: object = None) -> Opening:
     """Cuts an opening into a shape of the kernel; see ``carve``."""
-    shape, order = _joined_upper(shape, request.join)
+    given = shape
+    shape, order = _joined_upper(given, request.join)
     faces = UpperFaces(shape)
     rails = (rail_on(faces, request.p, "P"), rail_on(faces, request.q, "Q"))
     for rail, name in zip(rails, "PQ", strict=True):
@@ -110,6 +111,7 @@ def carve_shape(shape: TopoDS_Shape, request: CarveRequest, *, source: object = 
         body_count=count,
         lost_border=lost,
         upper_shape=shape,
+        given_shape=given,
         request=request,
         source=source,
     )

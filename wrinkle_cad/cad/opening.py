@@ -11,6 +11,7 @@ from OCP.TopoDS import TopoDS_Edge, TopoDS_Shape
 
 from .directrix import Directrix
 from .outline import Rail
+from .smooth import curve_edges, edge_row
 
 Floats = NDArray[np.float64]
 
@@ -66,6 +67,8 @@ class Opening:
     """mm; border of the upper that was cut out: slits between its faces, holes."""
     upper_shape: TopoDS_Shape
     """The upper, its faces joined where they meet."""
+    given_shape: TopoDS_Shape
+    """The upper as it was given."""
     request: CarveRequest
     """What was asked for."""
     source: Any = None
@@ -75,3 +78,46 @@ class Opening:
     def area_balance(self) -> float:
         """mm^2: body and removed together, less the upper."""
         return self.areas[1] + self.areas[2] - self.areas[0]
+
+    @property
+    def body(self) -> Any:
+        """The upper without the strip, as build123d has it, its names and colours kept."""
+        from .likeness import body_alike
+
+        return body_alike(self.body_shape, self.face_origin, self.given_shape, self.source)
+
+    @property
+    def removed(self) -> Any:
+        """What was cut out, as build123d has it."""
+        from .likeness import alike
+
+        return alike(self.removed_shape, self.source, "removed")
+
+    @property
+    def p(self) -> Any:
+        """The opening's boundary along P: an edge of the body, or a wire of several.
+
+        Where the upper has a gap that P crosses, it is a compound.
+        """
+        return _curve(self.p_edges, "P")
+
+    @property
+    def q(self) -> Any:
+        """The opening's boundary along Q."""
+        return _curve(self.q_edges, "Q")
+
+    @property
+    def rail_p(self) -> Any:
+        """P as it lies on the upper: a build123d edge or wire."""
+        return _curve(tuple(curve_edges(self.rail_p_curve)), "P")
+
+    @property
+    def rail_q(self) -> Any:
+        """Q as it lies on the upper."""
+        return _curve(tuple(curve_edges(self.rail_q_curve)), "Q")
+
+
+def _curve(edges: tuple[TopoDS_Edge, ...], label: str) -> Any:
+    from .guests import to_build123d
+
+    return to_build123d(edges[0] if len(edges) == 1 else edge_row(edges), label=label)

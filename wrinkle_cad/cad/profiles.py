@@ -17,7 +17,7 @@ from ..errors import InputError
 from .directrix import Directrix, make_directrix
 from .opening import Opening
 from .outline import Rail
-from .smooth import curve_edge, smooth_edge
+from .smooth import curve_edges, smooth_edge
 
 Floats = NDArray[np.float64]
 Wave = Callable[[Floats], Floats]
@@ -66,7 +66,7 @@ def wrinkle_profiles(
     p, q = profile_curves(
         opening, waves=waves, height=height, phase=phase, fade=fade, side=side, across=across
     )
-    return to_build123d(curve_edge(p), label="P"), to_build123d(curve_edge(q), label="Q")
+    return to_build123d(curve_edges(p)[0], label="P"), to_build123d(curve_edges(q)[0], label="Q")
 
 
 def profile_curves(

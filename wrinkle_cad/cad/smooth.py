@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 from numpy.typing import NDArray
 from OCP.BRepBuilderAPI import BRepBuilderAPI_MakeEdge, BRepBuilderAPI_MakeWire
@@ -9,6 +11,7 @@ from OCP.TopoDS import TopoDS_Edge, TopoDS_Shape
 from scipy.interpolate import make_interp_spline
 
 from .directrix import Directrix
+from .kernel import make_compound
 from .splines import make_curve
 
 Floats = NDArray[np.float64]
@@ -22,12 +25,16 @@ def smooth_edge(points: Floats) -> TopoDS_Edge:
     return BRepBuilderAPI_MakeEdge(make_curve(spline.c, knots, counts, 3)).Edge()
 
 
-def curve_edge(directrix: Directrix) -> TopoDS_Shape:
-    """Returns a directrix as an edge, or as a wire if it has several."""
-    edges = [BRepBuilderAPI_MakeEdge(curve).Edge() for curve in directrix.curves]
-    if len(edges) == 1:
-        return edges[0]
+def curve_edges(directrix: Directrix) -> list[TopoDS_Edge]:
+    """Returns a directrix as edges in a row."""
+    return [BRepBuilderAPI_MakeEdge(curve).Edge() for curve in directrix.curves]
+
+
+def edge_row(edges: Sequence[TopoDS_Edge]) -> TopoDS_Shape:
+    """Returns edges as one wire, or as a compound where they do not meet."""
     wire = BRepBuilderAPI_MakeWire()
     for edge in edges:
         wire.Add(edge)
+        if not wire.IsDone():
+            return make_compound(edges)
     return wire.Wire()
