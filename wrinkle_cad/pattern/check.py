@@ -102,7 +102,7 @@ def _likely_cut_layers(content: DxfContent) -> tuple[str, ...]:
 
 
 def _structure(problem: str) -> Finding:
-    return _finding("structure", "warning", f"DXF structure - {problem} - none - export it again")
+    return _finding("structure", "error", f"DXF structure - {problem} - none - export it again")
 
 
 def _units(content: DxfContent) -> Iterator[Finding]:

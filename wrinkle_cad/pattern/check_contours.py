@@ -94,13 +94,13 @@ def _crossings(rings: Sequence[Floats]) -> Iterator[Finding]:
                 "error",
                 f"contour - crosses itself at {_place(at)} - simple - correct the outline",
             )
-    tree = shapely.STRtree(contours)
-    first, second = tree.query(contours, predicate="intersects")
+    if len(contours) < 2:
+        return
+    first, second = shapely.STRtree(contours).query(contours, predicate="intersects")
     for i, j in zip(first, second, strict=True):
         if i < j and not contours[i].equals(contours[j]):
-            at = np.array(
-                shapely.intersection(contours[i], contours[j]).representative_point().coords[0]
-            )
+            meeting = shapely.intersection(contours[i], contours[j])
+            at = np.array(meeting.representative_point().coords[0])
             yield Finding(
                 "contours-touch",
                 "error",

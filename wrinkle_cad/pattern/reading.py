@@ -105,12 +105,10 @@ def read_dxf(path: Path) -> DxfContent:
     Raises:
         InputError: it cannot be read, or is no DXF file.
     """
+    is_whole = _check_sections(path)
     try:
         document, auditor = recover.readfile(path)
-    except OSError as error:
-        reason = error.strerror or "not a DXF file"
-        raise InputError(f"{path.name} - {reason} - a DXF file - check the path") from error
-    except (ezdxf.DXFError, ValueError, IndexError, KeyError, AttributeError) as error:
+    except (OSError, ezdxf.DXFError, ValueError, IndexError, KeyError, AttributeError) as error:
         # ezdxf raises these bare ones too from files cut off in the middle of a structure.
         raise InputError(
             f"{path.name} - no DXF structure in it ({type(error).__name__}) - a DXF file - export "
@@ -138,8 +136,24 @@ def read_dxf(path: Path) -> DxfContent:
         marks=tuple(marks),
         inserts=tuple(_insert(entity) for entity in document.modelspace().query("INSERT")),
         is_blocks=is_blocks,
-        problems=tuple(error.message for error in (*auditor.errors, *auditor.fixes)),
+        problems=(
+            *(() if is_whole else ("no EOF at its end, cut off",)),
+            *(error.message for error in (*auditor.errors, *auditor.fixes)),
+        ),
     )
+
+
+def _check_sections(path: Path) -> bool:
+    """Raises InputError for what is no DXF at all; returns whether the file has its end."""
+    try:
+        content = path.read_bytes()
+    except OSError as error:
+        raise InputError(f"{path.name} - {error.strerror} - a DXF file - check the path") from error
+    if not content.strip():
+        raise InputError(f"{path.name} - empty - a DXF file - export it again")
+    if b"SECTION" not in content:
+        raise InputError(f"{path.name} - no DXF section in it - a DXF file - check what it is")
+    return content.rstrip(b"\r\n\t \0\x1a").endswith(b"EOF")
 
 
 def _has_pieces(document: DxfDocument, blocks: Iterable[str]) -> bool:
@@ -184,30 +198,42 @@ def _is_flat_polyline(entity: DXFEntity) -> bool:
 
 def _line(entity: DXFEntity, space: str) -> FileLine | None:
     kind = entity.dxftype()
+    stated = _stated_vertices(entity)
     path = make_path(entity)
-    if len(path) == 0:
-        vertices = _stated_vertices(entity)
-        points, height = vertices[:, :2], float(np.abs(vertices[:, 2]).max(initial=0.0))
-        is_curved = False
+    is_curved = kind in ("ARC", "CIRCLE", "ELLIPSE", "SPLINE") or bool(path.has_curves)
+    if kind == "SPLINE":
+        points = _along_spline(entity)
+    elif is_curved:
+        points = np.array([tuple(point) for point in path.flattening(_SAGITTA)])
     else:
-        corners = np.array([tuple(point) for point in path.flattening(_SAGITTA)])
-        points, height = corners[:, :2], float(np.abs(corners[:, 2]).max())
-        is_curved = bool(path.has_curves)
-    if not is_curved and kind in ("LWPOLYLINE", "POLYLINE", "LINE"):
         # As the file states them: make_path leaves out segments without length.
-        points = _stated_vertices(entity)[:, :2]
-    is_closed = bool(getattr(entity, "is_closed", False)) or kind == "CIRCLE"
-    if kind in ("SPLINE", "ELLIPSE") and len(points) > 2:
-        gap = math.dist(points[0], points[-1])
-        is_closed = gap < settings.CHECK_ZERO
-    if is_closed and len(points) > 2 and (is_curved or kind in ("CIRCLE", "SPLINE", "ELLIPSE")):
-        points = points[:-1] if math.dist(points[0], points[-1]) < settings.CHECK_ZERO else points
-    if not len(points):
+        points = stated
+    if len(points) == 0:
         return None
-    count = len(_stated_vertices(entity)) if kind in ("LWPOLYLINE", "POLYLINE") else len(points)
+    if is_curved:
+        is_closed = len(points) > 2 and math.dist(points[0], points[-1]) < settings.CHECK_ZERO
+        points = points[:-1] if is_closed else points
+    else:
+        is_closed = bool(getattr(entity, "is_closed", False))
     return FileLine(
-        space, entity.dxf.layer, kind, frozen(points), is_closed, count, height, is_curved
+        space=space,
+        layer=entity.dxf.layer,
+        kind=kind,
+        points=frozen(points[:, :2]),
+        is_closed=is_closed,
+        vertex_count=len(stated) or len(points),
+        height=float(np.abs(points[:, 2]).max()),
+        is_curved=is_curved,
     )
+
+
+def _along_spline(entity: DXFEntity) -> Floats:
+    """Returns points (k, 3) along a spline's own domain, which a periodic one's knots exceed."""
+    spline = entity.construction_tool()
+    knots = spline.knots()
+    low, high = knots[spline.degree], knots[len(spline.control_points)]
+    parameters = np.linspace(low, high, 32 * len(spline.control_points) + 1)
+    return np.array([tuple(point) for point in spline.points(parameters.tolist())])
 
 
 def _stated_vertices(entity: DXFEntity) -> Floats:
