@@ -48,10 +48,14 @@ def shaded(triangles: Floats, color: Color, toward: Floats) -> Floats:
     normals = np.where(is_inside[:, None], -normals, normals)
     light = LIGHT / np.linalg.norm(LIGHT)
     half = (light + toward) / np.linalg.norm(light + toward)
-    diffuse = 0.35 + 0.6 * np.clip(normals @ light, 0.0, 1.0) + 0.15 * np.clip(normals @ toward, 0, 1)
+    diffuse = (
+        0.35 + 0.6 * np.clip(normals @ light, 0.0, 1.0) + 0.15 * np.clip(normals @ toward, 0, 1)
+    )
     shine = 0.22 * np.clip(normals @ half, 0.0, 1.0) ** 28
     base = np.where(is_inside[:, None], 0.45 * np.array(color), np.array(color))
-    return np.column_stack((np.clip(base * diffuse[:, None] + shine[:, None], 0, 1), np.ones(len(base))))
+    return np.column_stack(
+        (np.clip(base * diffuse[:, None] + shine[:, None], 0, 1), np.ones(len(base)))
+    )
 
 
 def draw(

@@ -35,7 +35,7 @@ INNER_WIDTH = 0.95
 
 
 def section_poles() -> NDArray[np.float64]:
-    """Returns the control points (20, 5, 3), mm, of the sections, from the heel by the inner side."""
+    """Returns the control points (20, 5, 3), mm, of the sections: heel, inner side, toe, outer."""
     outer = np.array(OUTER, dtype=np.float64)
     inner = outer[1:].copy()
     inner[:, [1, 6, 9, 12]] *= -INNER_WIDTH

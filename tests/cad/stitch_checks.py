@@ -117,7 +117,8 @@ def freecad_report(freecadcmd: str, paths: list[Path], folder: Path) -> list[str
         "            for edge in wire.OrderedEdges:\n"
         "                free.setdefault(edge.hashCode(), []).append(edge)\n"
         "    border = sum(e[0].Length for e in free.values() if len(e) == 1)\n"
-        "    print('JUDGED', len(shape.Shells), len(shape.Faces), shape.isValid(), round(border, 2))\n"
+        "    found = len(shape.Shells), len(shape.Faces), shape.isValid(), round(border, 2)\n"
+        "    print('JUDGED', *found)\n"
     )
     done = subprocess.run(
         [freecadcmd, str(script)], capture_output=True, text=True, timeout=300, check=False

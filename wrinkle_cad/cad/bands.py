@@ -16,10 +16,11 @@ from OCP.BRepBuilderAPI import BRepBuilderAPI_MakeEdge
 from OCP.gp import gp_Pnt
 from OCP.TopoDS import TopoDS_Edge, TopoDS_Shell
 
-from .. import settings
-from ..errors import InputError
-from ..strip.sampling import Samples
-from ..strip.triangulation import Triangulation, triangulate
+from wrinkle_cad import settings
+from wrinkle_cad.errors import InputError
+from wrinkle_cad.strip.sampling import Samples
+from wrinkle_cad.strip.triangulation import Triangulation, triangulate
+
 from .border import edge_ends
 from .directrix import Directrix, make_directrix, sample_directrix
 from .faces import build_shell

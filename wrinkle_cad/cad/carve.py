@@ -9,8 +9,9 @@ from numpy.typing import NDArray
 from OCP.BRepExtrema import BRepExtrema_DistShapeShape
 from OCP.TopoDS import TopoDS_Edge, TopoDS_Face, TopoDS_Shape
 
-from .. import settings
-from ..errors import CadError, InputError
+from wrinkle_cad import settings
+from wrinkle_cad.errors import CadError, InputError
+
 from . import kernel
 from .border import border_chain, connected_groups, edge_middle, joined_faces
 from .directrix import Directrix, make_directrix, orient_alike
@@ -87,7 +88,8 @@ def carve_shape(shape: TopoDS_Shape, request: CarveRequest, *, source: object = 
     on_border = _ends_on_border(shape, rails)
     sides = _sides(faces, rails, across, request, on_border)
     height = settings.RIBBON_PER_LENGTH * min(rail.length for rail in rails)
-    overrun = [tuple(height if ends else 0.0 for ends in on_border)] * 2 + [(0.0, 0.0)] * 2
+    beyond = (height * on_border[0], height * on_border[1])
+    overrun = [beyond, beyond, (0.0, 0.0), (0.0, 0.0)]
     split = split_faces(faces.faces, shape, sides, height, overrun[: len(sides)])
     body, removed, origin = _divided(split)
     _check_removed(removed, rails)
@@ -226,7 +228,7 @@ def _checked_areas(
         raise CadError(
             STEP,
             f"body and removed part have {kept + cut:.9g} mm2, the upper {whole:.9g}: off by"
-            f" {off:.1e} of it - the limit is {settings.AREA_BALANCE:.0e} - move the rails a little",
+            f" {off:.1e} of it - {settings.AREA_BALANCE:.0e} is the limit - move the rails a little",
         )
     return whole, kept, cut
 

@@ -16,7 +16,8 @@ from OCP.Geom import Geom_BSplineCurve
 from OCP.gp import gp_Pnt
 from OCP.TopoDS import TopoDS_Edge, TopoDS_Face
 
-from .. import settings
+from wrinkle_cad import settings
+
 from . import kernel
 from .border import edge_ends
 from .splines import curve_arrays, make_surface
@@ -70,8 +71,6 @@ def _cone(curve: Geom_BSplineCurve, apex: Floats) -> TopoDS_Face:
     poles, weights, knots, counts = curve_arrays(curve)
     grid = np.stack((poles, np.broadcast_to(apex, poles.shape)), axis=1)
     both = None if weights is None else np.stack((weights, weights), axis=1)
-    surface = make_surface(
-        grid, (knots, (0.0, 1.0)), (counts, (2, 2)), (curve.Degree(), 1), both
-    )
+    surface = make_surface(grid, (knots, (0.0, 1.0)), (counts, (2, 2)), (curve.Degree(), 1), both)
     with kernel.kernel_step("close an end of the opening"):
         return BRepBuilderAPI_MakeFace(surface, settings.CONFUSION).Face()

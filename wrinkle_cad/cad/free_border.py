@@ -8,8 +8,9 @@ from dataclasses import dataclass
 from OCP.BRepExtrema import BRepExtrema_DistShapeShape
 from OCP.TopoDS import TopoDS_Edge, TopoDS_Shape
 
-from .. import settings
-from ..errors import CadError
+from wrinkle_cad import settings
+from wrinkle_cad.errors import CadError
+
 from . import kernel
 from .border import edge_middle
 from .splitting import ShapeIndex

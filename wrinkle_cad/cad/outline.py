@@ -13,8 +13,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from .. import settings
-from ..errors import InputError
+from wrinkle_cad import settings
+from wrinkle_cad.errors import InputError
 
 from .directrix import Directrix
 from .projection import Feet, UpperFaces

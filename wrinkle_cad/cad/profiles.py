@@ -12,8 +12,9 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from .. import settings
-from ..errors import InputError
+from wrinkle_cad import settings
+from wrinkle_cad.errors import InputError
+
 from .directrix import Directrix, make_directrix
 from .opening import Opening
 from .outline import Rail

@@ -21,8 +21,8 @@ from OCP.ShapeAnalysis import ShapeAnalysis_Surface
 from OCP.TopAbs import TopAbs_OUT, TopAbs_REVERSED
 from OCP.TopoDS import TopoDS_Face, TopoDS_Shape
 
-from .. import settings
-from ..errors import InputError
+from wrinkle_cad import settings
+from wrinkle_cad.errors import InputError
 
 from . import kernel
 
@@ -55,9 +55,7 @@ class UpperFaces:
             )
         self._shape = upper
         self._surfaces = [ShapeAnalysis_Surface(BRep_Tool.Surface_s(face)) for face in self.faces]
-        self._inside = [
-            BRepTopAdaptor_FClass2d(face, settings.CONFUSION) for face in self.faces
-        ]
+        self._inside = [BRepTopAdaptor_FClass2d(face, settings.CONFUSION) for face in self.faces]
         self._boxes = [_box(face) for face in self.faces]
 
     def feet(self, points: Floats) -> Feet:

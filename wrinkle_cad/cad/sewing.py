@@ -12,7 +12,8 @@ from OCP.Geom import Geom_BSplineCurve
 from OCP.TopAbs import TopAbs_REVERSED
 from OCP.TopoDS import TopoDS_Face, TopoDS_Shape, TopoDS_Shell
 
-from ..errors import CadError
+from wrinkle_cad.errors import CadError
+
 from . import kernel
 from .borders import sub_curve
 from .splitting import ShapeIndex, oriented_edges

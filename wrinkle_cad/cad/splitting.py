@@ -24,16 +24,19 @@ from OCP.TopExp import TopExp_Explorer
 from OCP.TopoDS import TopoDS_Edge, TopoDS_Face, TopoDS_Shape
 from scipy.interpolate import make_interp_spline
 
-from .. import settings
-from ..errors import CadError
+from wrinkle_cad import settings
+from wrinkle_cad.errors import CadError
 
 from . import kernel
 from .outline import Side, unit
 from .splines import make_surface
 
 try:  # OCP 7.9
-    from OCP.TopTools import TopTools_ListOfShape
+    from OCP.TopTools import TopTools_IndexedMapOfShape, TopTools_ListOfShape
 except ImportError:  # OCP 8.0 keeps every collection in one module
+    from OCP.collections import (
+        IndexedMap_TopoDS_Shape_TopTools_ShapeMapHasher as TopTools_IndexedMapOfShape,
+    )
     from OCP.collections import List_TopoDS_Shape as TopTools_ListOfShape
 
 Floats = NDArray[np.float64]
@@ -43,7 +46,7 @@ class ShapeIndex:
     """Shapes numbered from 0; a shape and its reverse are the same."""
 
     def __init__(self, shapes: Iterable[TopoDS_Shape] = ()) -> None:
-        self._map = kernel.TopTools_IndexedMapOfShape()
+        self._map = TopTools_IndexedMapOfShape()
         for shape in shapes:
             self.add(shape)
 
@@ -149,9 +152,7 @@ def _ribbon(side: Side, height: float, overrun: tuple[float, float]) -> TopoDS_F
     return BRepBuilderAPI_MakeFace(surface, settings.CONFUSION).Face()
 
 
-def _extended(
-    points: Floats, normals: Floats, first: bool, extra: float
-) -> tuple[Floats, Floats]:
+def _extended(points: Floats, normals: Floats, first: bool, extra: float) -> tuple[Floats, Floats]:
     """Runs a side on beyond one end, straight, in steps as long as its own."""
     sense = 1 if first else -1
     run, turn = points[::sense], normals[::sense]
@@ -257,9 +258,7 @@ def edge_frame(edge: TopoDS_Edge, face: TopoDS_Face) -> tuple[Floats, Floats, Fl
     adaptor.D1(at, point, velocity)
     pcurve = BRep_Tool.CurveOnSurface_s(edge, face, 0.0, 1.0)
     uv = pcurve.Value(at)
-    measured = GeomLProp_SLProps(
-        BRep_Tool.Surface_s(face), uv.X(), uv.Y(), 1, settings.CONFUSION
-    )
+    measured = GeomLProp_SLProps(BRep_Tool.Surface_s(face), uv.X(), uv.Y(), 1, settings.CONFUSION)
     direction = measured.Normal()
     normal = np.array([direction.X(), direction.Y(), direction.Z()])
     if face.Orientation() == TopAbs_REVERSED:

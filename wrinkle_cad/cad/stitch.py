@@ -11,8 +11,9 @@ import numpy as np
 from numpy.typing import NDArray
 from OCP.TopoDS import TopoDS_Edge, TopoDS_Face, TopoDS_Shape, TopoDS_Shell
 
-from .. import settings
-from ..errors import CadError, InputError
+from wrinkle_cad import settings
+from wrinkle_cad.errors import CadError, InputError
+
 from . import kernel
 from .bands import Band, StripLike, make_band
 from .border import edge_ends
@@ -37,7 +38,7 @@ class StitchReport:
     free_edges_before: int
     """Free edges of the upper."""
     free_edges_after: int
-    """Free edges of the shell: the upper's own; where a strip ends on the border, in more pieces."""
+    """Free edges of the shell: the upper's own, in more pieces where a strip ends on them."""
     free_length_before_mm: float
     """Their length in the upper."""
     free_length_after_mm: float
