@@ -88,7 +88,7 @@ def test_a_scheduler_that_does_not_answer_is_told_in_one_line(
 ) -> None:
     monkeypatch.setattr("wrinkle_cad.batch.cluster._CONNECT_S", 1)
     with (
-        pytest.raises(InputError, match="--scheduler tcp://127.0.0.1:9"),
+        pytest.raises(InputError, match=r"--scheduler tcp://127.0.0.1:9"),
         cluster_executor("tcp://127.0.0.1:9"),
     ):
         pass

@@ -93,7 +93,7 @@ def figures_of(summary: Mapping[str, Any]) -> dict[str, Any]:
     """The figures of a job that a table of many jobs shows, over all its strips.
 
     Counts and areas are summed, folds and twists are the largest, ``developability`` is the share
-    of interior bridges that are locally convex, in per cent (100 without any bridge).
+    of interior bridges that are locally convex or inflections, in per cent (100 without any).
     """
     strips = [strip for strip in summary.get("strips", ()) if isinstance(strip, Mapping)]
     if not strips:
@@ -106,8 +106,9 @@ def figures_of(summary: Mapping[str, Any]) -> dict[str, Any]:
     for name in _LARGEST:
         figures[name] = max(float(strip.get(name, 0.0)) for strip in strips)
     figures["overlaps"] = any(bool(strip.get("overlaps")) for strip in strips)
-    interior, invalid = figures["interior_bridges"], figures["invalid_bridges"]
-    figures["developability"] = 100.0 * (1.0 - invalid / interior) if interior else 100.0
+    interior = figures["interior_bridges"]
+    failed = figures["invalid_bridges"] - figures["inflection_bridges"]
+    figures["developability"] = 100.0 * (1.0 - failed / interior) if interior else 100.0
     return figures
 
 

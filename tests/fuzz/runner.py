@@ -1,0 +1,181 @@
+"""Runs damaged STEP files through the real reader in workers, and tells what became of them.
+
+Usage: python -m tests.fuzz.runner --count N --seed S --keep DIR [FOLDER...]
+
+The originals are the examples and the files of the folders; those whose damage crashed a worker, hung it or showed
+a bug are copied to DIR. Exit code 1 when a bug showed.
+"""
+
+from __future__ import annotations
+
+import argparse
+import random
+import shutil
+import sys
+import tempfile
+import time
+from collections import Counter
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import psutil
+
+from tests.fuzz.mutations import mutate
+from wrinkle_cad.batch.conversion import convert
+from wrinkle_cad.batch.crew import WorkerCrew
+from wrinkle_cad.batch.ending import CrewLimits
+from wrinkle_cad.batch.events import BatchEvent, FileFinished
+from wrinkle_cad.batch.inputs import CAD_SUFFIXES, find_sources
+from wrinkle_cad.batch.manifest import Record
+from wrinkle_cad.batch.plan import plan_batch
+from wrinkle_cad.batch.staging import leftovers
+
+ROOT = Path(__file__).parent.parent.parent
+EXAMPLES = ROOT / "shoe_examples"
+STEP_SUFFIXES = tuple(suffix for suffix in CAD_SUFFIXES if suffix.startswith((".st", ".p21")))
+LARGEST_ORIGINAL = 300_000
+OUTPUT_KINDS = frozenset({"step", "stl", "dxf", "json", "html", "svg", "pdf"})
+BATCH_FILES = frozenset({"manifest.jsonl", "batch.log", "summary.csv", "index.html"})
+
+
+@dataclass
+class Figures:
+    """What became of the damaged files."""
+
+    files: int = 0
+    seconds: float = 0.0
+    done: int = 0
+    failures: Counter[str] = field(default_factory=Counter)
+    """By class of error."""
+    bugs: list[str] = field(default_factory=list)
+    """One line each: internal errors, lines that are none, files and processes out of place."""
+    longest: float = 0.0
+    """Seconds of the slowest file."""
+
+    def __str__(self) -> str:
+        kinds = ", ".join(f"{count} {name}" for name, count in self.failures.most_common())
+        return (
+            f"{self.files} files in {self.seconds:.0f} s: {self.done} done, {kinds}; slowest"
+            f" {self.longest:.1f} s; {len(self.bugs)} bugs"
+        )
+
+
+def originals(folders: Iterable[Path]) -> list[Path]:
+    """The STEP files below the folders that are small enough to be read often."""
+    found = (path for folder in folders for path in folder.rglob("*"))
+    return sorted(
+        path
+        for path in found
+        if path.suffix.lower() in STEP_SUFFIXES and 0 < path.stat().st_size < LARGEST_ORIGINAL
+    )
+
+
+def weighted(examples: Sequence[Path], others: Sequence[Path]) -> list[Path]:
+    """Both, the examples repeated until they are as many as the others."""
+    times = max(1, round(len(others) / max(1, len(examples))))
+    return [*examples] * times + [*others]
+
+
+def run(
+    folder: Path,
+    count: int,
+    seed: int,
+    sources: Sequence[Path],
+    *,
+    timeout_s: float = 60.0,
+    workers: int = 2,
+) -> tuple[Figures, list[Record]]:
+    """Makes damaged files in a folder, runs them all, and judges what came of it."""
+    inputs, outputs = folder / "in", folder / "out"
+    inputs.mkdir()
+    chance = random.Random(seed)
+    contents = [path.read_bytes() for path in sources]
+    for number in range(count):
+        pick = chance.randrange(len(contents))
+        name = f"{number:05d}-{sources[pick].stem}.step"
+        (inputs / name).write_bytes(mutate(contents[pick], chance))
+    figures = Figures(files=count)
+    records: list[Record] = []
+
+    def listen(event: BatchEvent) -> None:
+        if isinstance(event, FileFinished):
+            records.append(event.record)
+
+    planned = plan_batch(find_sources([str(inputs)], outputs).files, outputs)
+    crew = WorkerCrew(workers, CrewLimits(timeout_s=timeout_s))
+    start = time.monotonic()
+    convert(planned, outputs, crew, listen)
+    figures.seconds = time.monotonic() - start
+    for record in records:
+        judge(record, figures, timeout_s)
+    if len(records) != count:
+        figures.bugs.append(f"{len(records)} outcomes of {count} files")
+    check_surroundings(folder, records, figures)
+    return figures, records
+
+
+def judge(record: Record, figures: Figures, timeout_s: float) -> None:
+    """Counts an outcome and notes what must not be."""
+    seconds = sum(record.seconds.values())
+    figures.longest = max(figures.longest, seconds)
+    if seconds > timeout_s + 2.0:
+        figures.bugs.append(f"{record.input}: {seconds:.1f} s")
+    if record.is_done:
+        figures.done += 1
+        return
+    figures.failures[record.error] += 1
+    is_one_line = bool(record.message) and record.message.isprintable()
+    if not is_one_line or "Traceback" in record.message:
+        figures.bugs.append(f"{record.input}: no line of text: {record.message!r}")
+    if record.message.startswith("internal error"):
+        figures.bugs.append(f"{record.input}: {record.message}")
+
+
+def check_surroundings(folder: Path, records: Sequence[Record], figures: Figures) -> None:
+    """Notes processes that live on and files that are not where they belong."""
+    for child in psutil.Process().children(recursive=True):
+        if "spawn_main" in " ".join(child.cmdline()):
+            figures.bugs.append(f"process {child.pid} lives on")
+    figures.bugs += [f"left behind: {path.name}" for path, _ in leftovers(folder / "out")]
+    if {path.name for path in folder.iterdir()} != {"in", "out"}:
+        figures.bugs.append("a file outside of the output folder")
+    allowed = {file.name for record in records for file in record.outputs} | BATCH_FILES
+    for path in (folder / "out").rglob("*"):
+        if path.is_file() and path.name not in allowed and not path.name.endswith(".lock"):
+            figures.bugs.append(f"a file that no record names: {path.name}")
+
+
+def main() -> int:
+    """Runs from the command line."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("folders", nargs="*", type=Path, default=[])
+    parser.add_argument("--count", type=int, default=2000)
+    parser.add_argument("--seed", type=int, default=0)
+    parser.add_argument("--workers", type=int, default=2)
+    parser.add_argument("--timeout", type=float, default=60.0)
+    parser.add_argument("--keep", type=Path)
+    given = parser.parse_args()
+    with tempfile.TemporaryDirectory() as name:
+        figures, records = run(
+            Path(name),
+            given.count,
+            given.seed,
+            # Files that make a strip go deepest: half of the damage is theirs.
+            weighted(originals([EXAMPLES]), originals(given.folders)),
+            timeout_s=given.timeout,
+            workers=given.workers,
+        )
+        sys.stdout.write("\n".join([*figures.bugs, str(figures)]) + "\n")
+        if given.keep is not None:
+            given.keep.mkdir(parents=True, exist_ok=True)
+            for record in records:
+                is_crash = record.error in ("WorkerKilled", "TimeLimit", "MemoryLimit")
+                if is_crash or record.message.startswith("internal error"):
+                    shutil.copy(Path(name, "in", record.input), given.keep)
+                    sys.stdout.write(f"{record.input}: {record.message}\n")
+    return 1 if figures.bugs else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
