@@ -27,8 +27,8 @@ def notch_arcs(
 ) -> Floats:
     """Returns the arc lengths of the notches on a rail, (k,) mm from its start, ascending.
 
-    Counted and spaced notches that would stand too near a corner move away from it; where there
-    is no room between two corners they are left out, so fewer may come back.
+    Counted and spaced notches that would stand too near a corner move to the nearest place with
+    room; those that would crowd another there are left out, so fewer may come back.
 
     Args:
         length: mm, of the rail in space.
@@ -58,14 +58,20 @@ def notch_arcs(
 
 
 def _off_corners(arcs: Floats, stops: Floats, clearance: float) -> Floats:
-    after = np.clip(np.searchsorted(stops, arcs, side="right"), 1, len(stops) - 1)
-    low, high = stops[after - 1] + clearance, stops[after] - clearance
-    fits = low <= high
-    moved: Floats = np.unique(np.clip(arcs[fits], low[fits], high[fits]))
-    if len(moved) < 2:
-        return moved
-    apart = np.concatenate(([True], np.diff(moved) >= clearance))
-    return moved[apart]
+    """Returns the arcs moved to the nearest place that is clear of the stops, crowded ones left."""
+    low, high = stops[:-1] + clearance, stops[1:] - clearance
+    low, high = low[low <= high], high[low <= high]
+    if not len(low) or not len(arcs):
+        return np.zeros(0)
+    places = np.clip(arcs[:, None], low, high)
+    nearest = np.argmin(np.abs(places - arcs[:, None]), axis=1)
+    moved = np.unique(places[np.arange(len(arcs)), nearest])
+    least = min(clearance, 0.5 * float(arcs[0]))
+    kept = [float(moved[0])]
+    for arc in moved[1:]:
+        if arc - kept[-1] >= least:
+            kept.append(float(arc))
+    return np.array(kept)
 
 
 def corner_arcs(line: Floats, arcs: Floats) -> Floats:
