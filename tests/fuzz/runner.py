@@ -2,8 +2,8 @@
 
 Usage: python -m tests.fuzz.runner --count N --seed S --keep DIR [FOLDER...]
 
-The originals are the examples and the files of the folders; those whose damage crashed a worker, hung it or showed
-a bug are copied to DIR. Exit code 1 when a bug showed.
+The originals are the examples and the files of the folders; those whose damage crashed a worker,
+hung it or showed a bug are copied to DIR. Exit code 1 when a bug showed.
 """
 
 from __future__ import annotations
