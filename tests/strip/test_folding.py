@@ -6,7 +6,7 @@ import pytest
 from tests.strip import brute_force, exact_strips
 from wrinkle_cad.errors import InputError
 from wrinkle_cad.strip import triangulate
-from wrinkle_cad.strip.folding import ENERGIES, fold_cost
+from wrinkle_cad.strip.folding import ENERGIES, cost_row, new_costs
 
 
 def roof(angle: float) -> tuple[np.ndarray, np.ndarray]:
@@ -51,9 +51,12 @@ def test_the_paper_energy_of_a_roof_is_its_closed_form() -> None:
 
 
 def cost(angle: float, energy: str) -> tuple[float, float]:
-    """A bridge of length 2 between triangles of height 1."""
+    """A bridge of length 2 between triangles of height 1: energy and fold-backs, P after P."""
     x, y = np.cos(angle), -np.sin(angle)
-    return fold_cost(2.0, -1.0, 0.0, 1.0, x, y, 1.0, 1e-13, ENERGIES[energy])
+    view = np.array([[2.0, -1.0, 0.0, x, y, 0.0, 0.0, 0.0, 0.0]]).T.copy()
+    costs = new_costs(1)
+    cost_row(view, np.ones((4, 1)), 1e-13, ENERGIES[energy], costs)
+    return float(costs.bending[0, 0]), float(costs.fold_backs[0, 0])
 
 
 def test_the_hinge_energy_grows_up_to_a_fold_of_180_degrees() -> None:

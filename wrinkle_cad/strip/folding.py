@@ -10,7 +10,7 @@ import numpy.typing as npt
 from wrinkle_cad.settings import STEEPEST_HALF_FOLD
 
 from .compiled import compiled
-from .sightlines import BEFORE_P, NEXT_P
+from .sightlines import BEFORE_P, LENGTH, NEXT_P
 
 Floats = npt.NDArray[np.float64]
 
@@ -32,23 +32,12 @@ class StepCosts(NamedTuple):
     """(4, n) float64; bending energy at the bridge; row 2 * earlier step + later step."""
     fold_backs: Floats
     """(4, n) float64; rows as in bending; 1.0 for a fold of 180 degrees, else 0.0."""
+    heights: Floats
+    """(4, n) float64, mm; over the bridge, of the triangles before and after it on P, on Q."""
     degenerate: Floats
-    """(2, n) float64; 1.0 if the later step's triangle has no area, else 0.0."""
+    """(4, n) float64; rows as in heights; 1.0 if the triangle has no area, else 0.0."""
     area: Floats
     """(2, n) float64, mm2; of the later step's triangle."""
-
-
-@compiled
-def is_degenerate(length: float, height: float, bank: float, nothing: float) -> bool:
-    """Whether the triangle on a bridge has zero area: some vertex lies on the opposite side.
-
-    Args:
-        length: mm; of the bridge.
-        height: mm; of the third vertex over the bridge.
-        bank: mm; length of the triangle's bank edge.
-        nothing: mm; a height that is round-off.
-    """
-    return bool(length * height <= nothing * max(length, bank))
 
 
 @compiled
@@ -61,9 +50,10 @@ def fold_cost(
     by: float,
     second: float,
     nothing: float,
-    energy: int,
 ) -> tuple[float, float]:
-    """The cost of the fold at a bridge between two triangles that are not degenerate.
+    """The hinge energy of the fold at a bridge between two triangles that are not degenerate.
+
+    Written without branches, so that a loop over it runs on vector units.
 
     Args:
         length: mm; of the bridge.
@@ -74,31 +64,90 @@ def fold_cost(
         by: mm; see bx.
         second: mm; length of (bx, by), the later triangle's height.
         nothing: mm; an offset from the other triangle's plane that is round-off.
-        energy: HINGE or PAPER.
 
     Returns:
         The bending energy, and 1.0 if the later triangle folds back onto the earlier one, else 0.0;
-        such a fold costs no (infinite) energy but is counted. `paper` knows no such folds.
+        such a fold costs no (infinite) energy but is counted.
     """
     size = first * second
     sine = abs(ay * bx - ax * by)
+    sine = 0.0 if sine <= nothing * max(first, second) else sine
     cosine = -(ax * bx + ay * by)
-    if sine <= nothing * max(first, second):
-        sine = 0.0
-    if energy == PAPER:
-        return 0.5 * length * (sine / size) ** 2 / second, 0.0
-    far = size - cosine
-    if cosine < 0.0 and far >= _STEEPEST * sine:
-        return 0.0, 1.0
-    half = sine / (size + cosine) if cosine >= 0.0 else far / sine
-    return length * ((first + second) / size) * half * half, 0.0
+    is_sharp = cosine < 0.0
+    far = size + abs(cosine)
+    is_back = is_sharp and far >= _STEEPEST * sine
+    # The tangent of half the angle, by whichever formula does not cancel.
+    half_over = far if is_sharp else sine
+    half_under = sine if is_sharp else far
+    bending = length * (first + second) * half_over * half_over / (half_under * half_under * size)
+    return 0.0 if is_back else bending, 1.0 if is_back else 0.0
+
+
+class _Side(NamedTuple):
+    """The triangles on one side of n bridges: x, y of the third vertex, height, 1.0 if flat."""
+
+    x: Floats
+    y: Floats
+    height: Floats
+    degenerate: Floats
+
+
+@compiled
+def _measure_triangles(length: Floats, banks: Floats, nothing: float, side: _Side) -> None:
+    """Writes heights over the bridges, and which triangles have zero area.
+
+    A triangle has none if a vertex lies on the opposite side, up to round-off.
+    """
+    x, y, height, degenerate = side
+    for j in range(length.size):
+        height[j] = np.sqrt(x[j] * x[j] + y[j] * y[j])
+        is_flat = length[j] * height[j] <= nothing * max(length[j], banks[j])
+        degenerate[j] = 1.0 if is_flat else 0.0
+
+
+@compiled
+def _cost_hinges(
+    length: Floats, a: _Side, b: _Side, nothing: float, bending: Floats, fold_backs: Floats
+) -> None:
+    """Writes hinge energies and fold-backs between the triangles on two sides."""
+    for j in range(length.size):
+        bent, back = fold_cost(
+            length[j], a.x[j], a.y[j], a.height[j], b.x[j], b.y[j], b.height[j], nothing
+        )
+        has_fold = a.degenerate[j] + b.degenerate[j] == 0.0
+        bending[j] = bent if has_fold else 0.0
+        fold_backs[j] = back if has_fold else 0.0
+
+
+@compiled
+def _cost_by_the_paper(
+    length: Floats, a: _Side, b: _Side, nothing: float, bending: Floats, fold_backs: Floats
+) -> None:
+    """Writes the energies of Eq. (3); that equation knows no fold-backs."""
+    for j in range(length.size):
+        sine = abs(a.y[j] * b.x[j] - a.x[j] * b.y[j])
+        sine = 0.0 if sine <= nothing * max(a.height[j], b.height[j]) else sine
+        sine /= a.height[j] * b.height[j]
+        has_fold = a.degenerate[j] + b.degenerate[j] == 0.0
+        bending[j] = 0.5 * length[j] * sine * sine / b.height[j] if has_fold else 0.0
+        fold_backs[j] = 0.0
+
+
+@compiled
+def _side_of(view: Floats, costs: StepCosts, number: int) -> _Side:
+    x = BEFORE_P + 2 * number
+    return _Side(view[x], view[x + 1], costs.heights[number], costs.degenerate[number])
 
 
 @compiled
 def new_costs(count: int) -> StepCosts:
     """Returns room for the costs of leaving so many bridges."""
     return StepCosts(
-        np.empty((4, count)), np.empty((4, count)), np.empty((2, count)), np.empty((2, count))
+        np.empty((4, count)),
+        np.empty((4, count)),
+        np.empty((4, count)),
+        np.empty((4, count)),
+        np.empty((2, count)),
     )
 
 
@@ -120,28 +169,20 @@ def cost_row(
         energy: HINGE or PAPER.
         costs: written.
     """
-    bending, fold_backs, degenerate, area = costs
-    for j in range(view.shape[1]):
-        length = view[0, j]
-        for later in range(2):
-            bx, by = view[NEXT_P + 4 * later, j], view[NEXT_P + 1 + 4 * later, j]
-            height = np.sqrt(bx * bx + by * by)
-            is_flat = is_degenerate(length, height, banks[1 + 2 * later, j], nothing)
-            degenerate[later, j] = 1.0 if is_flat else 0.0
-            area[later, j] = 0.5 * length * height
+    length = view[LENGTH]
+    for number in range(4):
+        _measure_triangles(length, banks[number], nothing, _side_of(view, costs, number))
+    for later in range(2):
+        after = _side_of(view, costs, 2 * later + 1)
+        costs.area[later] = 0.5 * length * after.height
         for earlier in range(2):
-            ax, ay = view[BEFORE_P + 4 * earlier, j], view[BEFORE_P + 1 + 4 * earlier, j]
-            arm = np.sqrt(ax * ax + ay * ay)
-            is_flat = is_degenerate(length, arm, banks[2 * earlier, j], nothing)
-            for later in range(2):
-                row = 2 * earlier + later
-                bending[row, j] = fold_backs[row, j] = 0.0
-                if not is_flat and degenerate[later, j] == 0.0:
-                    bx, by = view[NEXT_P + 4 * later, j], view[NEXT_P + 1 + 4 * later, j]
-                    height = np.sqrt(bx * bx + by * by)
-                    bending[row, j], fold_backs[row, j] = fold_cost(
-                        length, ax, ay, arm, bx, by, height, nothing, energy
-                    )
+            before = _side_of(view, costs, 2 * earlier)
+            row = 2 * earlier + later
+            bending, fold_backs = costs.bending[row], costs.fold_backs[row]
+            if energy == PAPER:
+                _cost_by_the_paper(length, before, after, nothing, bending, fold_backs)
+            else:
+                _cost_hinges(length, before, after, nothing, bending, fold_backs)
 
 
 def fold_angles(view: Floats, steps: npt.NDArray[np.int8]) -> Floats:

@@ -101,7 +101,12 @@ def _decide_row(
     end; on return those from this row's. Bit 0 of a choice is the step to take (0: P) after
     a P-step, bit 1 that after a Q-step.
     """
-    bending, fold_backs, degenerate, area = costs
+    bending, fold_backs, degenerate, area = (
+        costs.bending,
+        costs.fold_backs,
+        costs.degenerate[1::2],
+        costs.area,
+    )
     parts = len(weights)
     last = view.shape[1] - 1
     to_end = np.zeros((2, parts))

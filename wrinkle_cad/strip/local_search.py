@@ -53,8 +53,8 @@ def _easier_step(rails: Rails, i: int, j: int, earlier: int, nothing: float, ene
     banks[2:, 0] = bank_lengths(rails[3][:, j : j + 2])
     cost_row(view, banks, nothing, energy, costs)
     row = 2 * earlier
-    p_count = costs.degenerate[0, 0] + costs.fold_backs[row, 0]
-    q_count = costs.degenerate[1, 0] + costs.fold_backs[row + 1, 0]
+    p_count = costs.degenerate[1, 0] + costs.fold_backs[row, 0]
+    q_count = costs.degenerate[3, 0] + costs.fold_backs[row + 1, 0]
     if p_count != q_count:
         return 0 if p_count < q_count else 1
     return 0 if costs.bending[row, 0] <= costs.bending[row + 1, 0] else 1

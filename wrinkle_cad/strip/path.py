@@ -69,7 +69,7 @@ def walk(
     costs = new_costs(bridges.shape[0])
     cost_row(view, _bank_lengths_at(bridges, p_banks, q_banks), nothing, energy, costs)
     leaving = np.arange(steps.size)
-    is_flat = costs.degenerate[steps, leaving] > 0.0
+    is_flat = costs.degenerate[2 * steps + 1, leaving] > 0.0
     turn = 2 * steps[:-1] + steps[1:], leaving[1:]
     fold = fold_angles(view[:, 1:-1], steps)
     fold[is_flat[:-1] | is_flat[1:]] = 0.0

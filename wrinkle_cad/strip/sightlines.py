@@ -42,6 +42,50 @@ def bank_lengths(banks: Floats) -> Floats:
 
 
 @compiled
+def _frames(start: Floats, q: Floats, length: Floats, first: Floats, second: Floats) -> None:
+    """Writes the lengths of bridges and two axes (3, n) that stand square on each.
+
+    The frame is that of Duff et al., "Building an orthonormal basis, revisited", Journal of
+    Computer Graphics Techniques 6(1), 2017: no square root, no branch. A bridge of zero length gets
+    the frame of the third axis.
+    """
+    x, y, z = start[0], start[1], start[2]
+    qx, qy, qz = q[0], q[1], q[2]
+    ux, uy, uz = first[0], first[1], first[2]
+    vx, vy, vz = second[0], second[1], second[2]
+    for j in range(length.size):
+        ex, ey, ez = qx[j] - x, qy[j] - y, qz[j] - z
+        size = np.sqrt(ex * ex + ey * ey + ez * ez)
+        length[j] = size
+        inverse = 1.0 / size if size > 0.0 else 0.0
+        ex, ey = ex * inverse, ey * inverse
+        ez = ez * inverse if size > 0.0 else 1.0
+        sign = 1.0 if ez >= 0.0 else -1.0
+        a = -1.0 / (sign + ez)
+        b = ex * ey * a
+        ux[j], uy[j], uz[j] = 1.0 + sign * ex * ex * a, sign * b, -sign * ex
+        vx[j], vy[j], vz[j] = b, sign + ey * ey * a, -ey
+
+
+@compiled
+def _project_one(vector: Floats, sign: float, axis: Floats, offset: Floats) -> None:
+    """Writes the components of one vector along many axes (3, n)."""
+    x, y, z = sign * vector[0], sign * vector[1], sign * vector[2]
+    ux, uy, uz = axis[0], axis[1], axis[2]
+    for j in range(offset.size):
+        offset[j] = x * ux[j] + y * uy[j] + z * uz[j]
+
+
+@compiled
+def _project_each(vectors: Floats, sign: float, axis: Floats, offset: Floats) -> None:
+    """Writes the component of each vector (3, n) along its axis (3, n)."""
+    x, y, z = vectors[0], vectors[1], vectors[2]
+    ux, uy, uz = axis[0], axis[1], axis[2]
+    for j in range(offset.size):
+        offset[j] = sign * (x[j] * ux[j] + y[j] * uy[j] + z[j] * uz[j])
+
+
+@compiled
 def look_along(start: Floats, p_banks: Floats, q: Floats, q_banks: Floats, view: Floats) -> None:
     """Fills a view with the bridges from one sample of P to samples of Q.
 
@@ -54,33 +98,14 @@ def look_along(start: Floats, p_banks: Floats, q: Floats, q_banks: Floats, view:
             in a right-handed frame whose third axis is the bridge from P to Q. The frame itself is
             of no meaning: only products of two offsets of one bridge are.
     """
-    bx, by, bz = -p_banks[0, 0], -p_banks[1, 0], -p_banks[2, 0]
-    nx, ny, nz = p_banks[0, 1], p_banks[1, 1], p_banks[2, 1]
-    for j in range(q.shape[1]):
-        ex, ey, ez = q[0, j] - start[0], q[1, j] - start[1], q[2, j] - start[2]
-        length = np.sqrt(ex * ex + ey * ey + ez * ez)
-        # A bridge of zero length gets the frame of the third axis.
-        inverse = 1.0 / length if length > 0.0 else 0.0
-        ex, ey = ex * inverse, ey * inverse
-        ez = ez * inverse if length > 0.0 else 1.0
-        # A frame without square root or branch: Duff et al., "Building an orthonormal basis,
-        # revisited", Journal of Computer Graphics Techniques 6(1), 2017.
-        sign = np.copysign(1.0, ez)
-        a = -1.0 / (sign + ez)
-        b = ex * ey * a
-        ux, uy, uz = 1.0 + sign * ex * ex * a, sign * b, -sign * ex
-        vx, vy, vz = b, sign + ey * ey * a, -ey
-        qx, qy, qz = q_banks[0, j], q_banks[1, j], q_banks[2, j]
-        rx, ry, rz = q_banks[0, j + 1], q_banks[1, j + 1], q_banks[2, j + 1]
-        view[0, j] = length
-        view[1, j] = bx * ux + by * uy + bz * uz
-        view[2, j] = bx * vx + by * vy + bz * vz
-        view[3, j] = nx * ux + ny * uy + nz * uz
-        view[4, j] = nx * vx + ny * vy + nz * vz
-        view[5, j] = -(qx * ux + qy * uy + qz * uz)
-        view[6, j] = -(qx * vx + qy * vy + qz * vz)
-        view[7, j] = rx * ux + ry * uy + rz * uz
-        view[8, j] = rx * vx + ry * vy + rz * vz
+    count = q.shape[1]
+    axes = np.empty((2, 3, count))
+    _frames(start, q, view[LENGTH], axes[0], axes[1])
+    for row in range(2):
+        _project_one(p_banks[:, 0], -1.0, axes[row], view[BEFORE_P + row])
+        _project_one(p_banks[:, 1], 1.0, axes[row], view[NEXT_P + row])
+        _project_each(q_banks[:, :count], -1.0, axes[row], view[BEFORE_Q + row])
+        _project_each(q_banks[:, 1:], 1.0, axes[row], view[NEXT_Q + row])
 
 
 @compiled
