@@ -1,4 +1,4 @@
-"""Whatever files, folders and labels are called, nothing is written outside of the output folder."""
+"""Whatever files, folders and labels are called, nothing is written outside the output folder."""
 
 from __future__ import annotations
 
