@@ -214,9 +214,9 @@ def test_a_named_face_inside_a_solid_is_listed_but_not_free(tmp_path: Path) -> N
     ("data", "cause"),
     [
         ("", "no geometry: no curve"),
-        ("#1=DOCUMENT_FILE('a.stp','','',#2,'',$);\n", "external references"),
+        ("#1=DOCUMENT_FILE('a.stp','','',$,'',$);\n", "external references"),
         (
-            "#1=TESSELLATED_SHAPE_REPRESENTATION('',(),#2);\n",
+            "#1=TESSELLATED_SHAPE_REPRESENTATION('',(),$);\n",
             "only triangles",
         ),
     ],

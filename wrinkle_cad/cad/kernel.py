@@ -14,6 +14,10 @@ from contextlib import contextmanager
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
+from OCP import Geom as Geom_module
+from OCP import Standard, StdFail
+from OCP import TopoDS as TopoDS_module
+from OCP import gp as gp_module
 from OCP.Bnd import Bnd_Box
 from OCP.BRep import BRep_Builder, BRep_Tool
 from OCP.BRepAdaptor import BRepAdaptor_Curve
@@ -28,17 +32,6 @@ from OCP.GeomConvert import GeomConvert
 from OCP.gp import gp_Pnt
 from OCP.GProp import GProp_GProps
 from OCP.Quantity import Quantity_Color, Quantity_ColorRGBA, Quantity_TOC_sRGB
-from OCP.Standard import (
-    Standard_ConstructionError,
-    Standard_DimensionError,
-    Standard_DomainError,
-    Standard_Failure,
-    Standard_NullObject,
-    Standard_NumericError,
-    Standard_ProgramError,
-    Standard_RangeError,
-)
-from OCP.StdFail import StdFail_NotDone
 from OCP.TopAbs import (
     TopAbs_EDGE,
     TopAbs_FACE,
@@ -73,16 +66,13 @@ except ImportError:  # OCP 8.0 keeps every collection in one module
 Floats = NDArray[np.float64]
 
 # The bindings register each class on its own: they share no base but Exception.
-KERNEL_ERRORS = (
-    Standard_ConstructionError,
-    Standard_DimensionError,
-    Standard_DomainError,
-    Standard_Failure,
-    Standard_NullObject,
-    Standard_NumericError,
-    Standard_ProgramError,
-    Standard_RangeError,
-    StdFail_NotDone,
+KERNEL_ERRORS: tuple[type[Exception], ...] = (
+    *(
+        kind
+        for module in (Standard, StdFail, TopoDS_module, Geom_module, gp_module)
+        for kind in vars(module).values()
+        if isinstance(kind, type) and issubclass(kind, Exception)
+    ),
     RuntimeError,
 )
 

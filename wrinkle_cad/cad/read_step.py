@@ -16,6 +16,7 @@ from .kernel import KERNEL_ERRORS, as_edge, edges_of, kind_name
 from .loose_edges import chain_edges
 from .shapes import CURVE_KINDS, CadFile, has_role
 from .sniff import STEP, Source
+from .step_links import link_fault
 from .step_names import curve_names
 from .step_text import check_step, length_units, plain_text, why_no_shape
 from .units import check_unit, unit_words
@@ -38,6 +39,9 @@ def read(source: Source, unit: str | None) -> CadFile:
     """
     text = plain_text(source.content)
     check_step(source, text)
+    fault = link_fault(text)
+    if fault is not None:
+        raise source.fail(f"damaged: {fault} - export it again")
     declared = length_units(text)
     mm_per_unit = check_unit(source, declared, unit)
     leaves = _leaves(source, text)
