@@ -104,6 +104,9 @@ LENGTH_ERROR: Final = 1e-9
 AREA_RELATIVE_ERROR: Final = 1e-9
 """How exactly the CAD kernel integrates the area of a face; its own default is some 1e-5."""
 
+AREA_ORDERS: Final = (1e-12, 1e-16, 1e-20, 1e-30)
+"""Error bounds that make the CAD kernel choose ever higher orders of integration."""
+
 PATTERN_CORNER: Final = 0.5
 """rad; the outline of a pattern turns sharper than this at a corner, else it is a curve."""
 
@@ -244,6 +247,9 @@ can be off their surfaces.
 THIN_FACE_PER_SIZE: Final = 5e-7
 """... but no wider than this share of the strip's size. Rails within twice this width meet."""
 
+KNOT_GAP: Final = 1e-9
+"""mm; knots of a rail nearer to one another than this are one knot."""
+
 PLANE_GAP: Final = 2e-8
 """mm; a curve and an apex within this of one plane make a planar face instead of a cone."""
 
@@ -329,3 +335,6 @@ EDGE_TOLERANCE_LIMIT: Final = 1e-3
 BAND_BENDING_PRICE: Final = 5.0
 """A band that bends more than so many times the least is taken with the least bending instead:
 its extra valid bridges were bought with folds."""
+
+AREA_BALANCE_ORDERS: Final = (1e-3, 1e-5, 1e-7, 1e-9, 1e-12)
+"""Error bounds that make the CAD kernel choose ever higher orders, from the fastest."""

@@ -15,6 +15,7 @@ from wrinkle_cad.errors import CadError, InputError
 from . import kernel
 from .border import border_chain, connected_groups, edge_middle, joined_faces
 from .directrix import Directrix, make_directrix, orient_alike
+from .face_areas import face_areas
 from .opening import CarveRequest, Opening
 from .outline import (
     Rail,
@@ -109,7 +110,7 @@ def carve_shape(shape: TopoDS_Shape, request: CarveRequest, *, source: object = 
         ends_on_border=on_border,
         face_origin=tuple(order[i] for i in origin),
         distances=(float(rails[0].feet.distances.max()), float(rails[1].feet.distances.max())),
-        areas=_checked_areas(shape, body, removed),
+        areas=_checked_areas(faces.faces, split),
         body_count=count,
         lost_border=lost,
         upper_shape=shape,
@@ -215,20 +216,23 @@ def _check_whole(faces: UpperFaces, body: Sequence[TopoDS_Face], allow_split: bo
     return after
 
 
-def _checked_areas(
-    shape: TopoDS_Shape, body: Sequence[TopoDS_Face], removed: Sequence[TopoDS_Face]
-) -> tuple[float, float, float]:
+def _checked_areas(faces: Sequence[TopoDS_Face], split: Split) -> tuple[float, float, float]:
+    """Returns mm^2: upper, body, removed; a face that was not split is measured once."""
     bound = settings.AREA_BALANCE / 10.0
-    whole, kept, cut = (
-        kernel.area_of(part, relative_error=bound)
-        for part in (shape, kernel.make_compound(body), kernel.make_compound(removed))
-    )
+    whole = kept = cut = 0.0
+    for face, group, inside in zip(faces, split.pieces, split.is_inside, strict=True):
+        (before,) = face_areas([face], bound)
+        is_whole = len(group) == 1 and group[0].IsPartner(face)
+        after = [before] if is_whole else face_areas(group, bound)
+        whole += before
+        kept += sum(area for area, is_in in zip(after, inside, strict=True) if not is_in)
+        cut += sum(area for area, is_in in zip(after, inside, strict=True) if is_in)
     off = abs(kept + cut - whole) / whole
     if off > settings.AREA_BALANCE:
         raise CadError(
             STEP,
             f"body and removed part have {kept + cut:.9g} mm2, the upper {whole:.9g}: off by"
-            f" {off:.1e} of it - {settings.AREA_BALANCE:.0e} is the limit - move the rails a little",
+            f" {off:.1e} of it - {settings.AREA_BALANCE:.0e} is the limit - move the rails",
         )
     return whole, kept, cut
 

@@ -20,6 +20,7 @@ from .border import edge_ends
 from .carve import carve_shape
 from .directrix import Directrix
 from .ends import end_fan
+from .face_areas import face_areas
 from .free_border import compared_border
 from .opening import Opening
 from .seam_angle import SeamAngle, seam_angles
@@ -196,7 +197,7 @@ def _stitched(
         free_length_after_mm=border.length_after,
         max_edge_tolerance_mm=_checked_tolerance(sewn.shell, upper),
         area_balance_mm2=sum(opening.area_balance for opening in chained),
-        area_mm2=kernel.area_of(sewn.shell, relative_error=settings.AREA_BALANCE / 10.0),
+        area_mm2=sum(face_areas(sewn.faces, settings.AREA_BALANCE)),
         is_valid=True,
         seams=seam_angles(sewn.faces, parts),
         bands=tuple(bands),
