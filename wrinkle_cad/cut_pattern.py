@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-from dataclasses import dataclass
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass, replace
 from datetime import datetime
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Protocol
 
 from . import settings
 from .findings import Finding
-from .pattern.making import make_pieces
+from .pattern.making import make_pieces, rail_corners
 from .pattern.nesting import laid_out
 from .pattern.options import PieceSettings
 from .pattern.piece import PatternPiece
@@ -18,6 +18,7 @@ from .pattern.piece import PatternPiece
 if TYPE_CHECKING:
     from .pattern.contours import Curves
     from .pattern.dxf import DxfVersion
+    from .strip.sampling import Samples
     from .strip.triangulation import Triangulation
     from .strip.unrolling import Unrolling
 
@@ -28,6 +29,14 @@ class FlatStrip(Protocol):
     @property
     def name(self) -> str:
         """What its pieces are called."""
+
+    @property
+    def p_samples(self) -> Samples:
+        """The samples of its rail P; a strip sewn to that rail has the same object."""
+
+    @property
+    def q_samples(self) -> Samples:
+        """The samples of its rail Q."""
 
     @property
     def triangulation(self) -> Triangulation:
@@ -141,11 +150,38 @@ def pattern_of_strips(
         InputError: a strip covers itself when flat and is not to be split, or a setting does not
             fit it.
     """
+    chosen = piece_settings or PieceSettings()
+    given = list(strips)
     made = [
         (index, piece)
-        for index, strip in enumerate(strips)
+        for index, (strip, own) in enumerate(
+            zip(given, _settings_by_strip(given, chosen), strict=True)
+        )
         for piece in make_pieces(
-            strip.unrolling, strip.triangulation, name=strip.name, settings=piece_settings
+            strip.unrolling, strip.triangulation, name=strip.name, settings=own
         )
     ]
     return Pattern(laid_out([piece for _, piece in made]), tuple(index for index, _ in made))
+
+
+def _settings_by_strip(
+    strips: Sequence[FlatStrip], chosen: PieceSettings
+) -> Iterator[PieceSettings]:
+    """The settings of each strip: seams know the corners of the strip on their other side."""
+    corners: dict[int, list[float]] = {}
+    for strip in strips:
+        both = rail_corners(strip.unrolling, strip.triangulation, name=strip.name, settings=chosen)
+        for rail, at in zip(_rails(strip), both, strict=True):
+            corners.setdefault(rail, []).extend(at.tolist())
+    for strip in strips:
+        p_rail, q_rail = _rails(strip)
+        yield replace(
+            chosen,
+            notches_p=replace(chosen.notches_p, partner_corners=tuple(corners[p_rail])),
+            notches_q=replace(chosen.notches_q, partner_corners=tuple(corners[q_rail])),
+        )
+
+
+def _rails(strip: FlatStrip) -> tuple[int, int]:
+    # Strips that share a rail share its samples: one sampling per directrix.
+    return id(strip.p_samples), id(strip.q_samples)

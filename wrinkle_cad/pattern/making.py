@@ -17,7 +17,7 @@ from .neutral import neutral_layer
 from .options import Hand, PerSide, PieceSettings
 from .outline import sew_outline
 from .piece import Floats, Outline, PatternPiece, frozen
-from .placing import placed_notches, seam_arcs
+from .placing import placed_notches, seam_arcs, seam_corners
 from .splitting import non_overlapping_runs, overlaps
 
 if TYPE_CHECKING:
@@ -49,16 +49,7 @@ def make_pieces(
             does not fit it; it is smaller than the tolerance.
     """
     chosen = settings or PieceSettings()
-    strip = neutral_layer(flat_strip(unrolling, triangulation), chosen.neutral_offset)
-    runs: tuple[tuple[int, int], ...] = ((0, len(strip.bridges) - 1),)
-    if overlaps(strip, chosen.tolerance):
-        if chosen.overlap == "refuse":
-            raise InputError(
-                f"pattern of {name} - it overlaps itself when flat - one flat piece must not - "
-                "let it be split (overlap: split)"
-            )
-        runs = non_overlapping_runs(strip, tolerance=chosen.tolerance)
-    parts = [strip.run(*run) for run in runs]
+    strip, parts = _strip_in_parts(unrolling, triangulation, name, chosen)
     arcs = seam_arcs(strip, parts, chosen)
     pieces: list[PatternPiece] = []
     for count, part in enumerate(parts, start=1):
@@ -68,6 +59,40 @@ def make_pieces(
             piece = replace(piece, findings=(_split_finding(name, len(parts)), *piece.findings))
         pieces.extend(_both_hands(piece, chosen))
     return tuple(pieces)
+
+
+def rail_corners(
+    unrolling: Unrolling,
+    triangulation: Triangulation,
+    *,
+    name: str,
+    settings: PieceSettings | None = None,
+) -> tuple[Floats, Floats]:
+    """Returns the arc lengths in mm at which P and Q of a strip's pieces have corners.
+
+    Two strips that share a rail pass these to each other (``NotchRule.partner_corners``).
+
+    Raises:
+        InputError: as ``make_pieces``, where the strip overlaps itself.
+    """
+    chosen = settings or PieceSettings()
+    return seam_corners(*_strip_in_parts(unrolling, triangulation, name, chosen))
+
+
+def _strip_in_parts(
+    unrolling: Unrolling, triangulation: Triangulation, name: str, chosen: PieceSettings
+) -> tuple[FlatStrip, list[FlatStrip]]:
+    """Returns the neutral layer of a strip, whole and as the parts that do not overlap."""
+    strip = neutral_layer(flat_strip(unrolling, triangulation), chosen.neutral_offset)
+    runs: tuple[tuple[int, int], ...] = ((0, len(strip.bridges) - 1),)
+    if overlaps(strip, chosen.tolerance):
+        if chosen.overlap == "refuse":
+            raise InputError(
+                f"pattern of {name} - it overlaps itself when flat - one flat piece must not - "
+                "let it be split (overlap: split)"
+            )
+        runs = non_overlapping_runs(strip, tolerance=chosen.tolerance)
+    return strip, [strip.run(*run) for run in runs]
 
 
 def make_piece(

@@ -29,11 +29,14 @@ class NotchRule:
         count: notches at equal distances, none at the ends.
         spacing: mm of seam between notches; rounded so that all distances are equal.
         at: mm of seam from the rail's start, one per notch.
+        partner_corners: mm of seam at which the piece sewn to this side has corners; notches keep
+            away from them as well, so that both pieces get the same ones.
     """
 
     count: int = 0
     spacing: float | None = None
     at: tuple[float, ...] = ()
+    partner_corners: tuple[float, ...] = ()
 
     def __post_init__(self) -> None:
         if self.count < 0:

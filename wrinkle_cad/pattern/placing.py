@@ -23,17 +23,25 @@ def seam_arcs(
     Kinks of the rails and the places where the strip is split are corners, so no notch of any
     part stands on one.
     """
-    p_cuts = [part.p_arc[0] for part in parts[1:]]
-    q_cuts = [part.q_arc[0] for part in parts[1:]]
+    p_corners, q_corners = seam_corners(strip, parts)
     return (
-        _rail_arcs(strip.p_line, strip.p_arc, p_cuts, chosen.notches_p),
-        _rail_arcs(strip.q_line, strip.q_arc, q_cuts, chosen.notches_q),
+        _rail_arcs(float(strip.p_arc[-1]), p_corners, chosen.notches_p),
+        _rail_arcs(float(strip.q_arc[-1]), q_corners, chosen.notches_q),
     )
 
 
-def _rail_arcs(line: Floats, arcs: Floats, cuts: Sequence[float], rule: NotchRule) -> Floats:
-    corners = np.concatenate((corner_arcs(line, arcs), np.array(cuts, dtype=np.float64)))
-    return notch_arcs(float(arcs[-1]), rule, corners=corners.tolist())
+def seam_corners(strip: FlatStrip, parts: Sequence[FlatStrip]) -> tuple[Floats, Floats]:
+    """Returns the arc lengths in mm at which P and Q have corners: kinks and cuts."""
+    p_cuts = [part.p_arc[0] for part in parts[1:]]
+    q_cuts = [part.q_arc[0] for part in parts[1:]]
+    return (
+        np.append(corner_arcs(strip.p_line, strip.p_arc), p_cuts),
+        np.append(corner_arcs(strip.q_line, strip.q_arc), q_cuts),
+    )
+
+
+def _rail_arcs(length: float, corners: Floats, rule: NotchRule) -> Floats:
+    return notch_arcs(length, rule, corners=[*corners.tolist(), *rule.partner_corners])
 
 
 def placed_notches(
