@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+from pathlib import Path
 
 from . import settings
 
@@ -12,6 +13,7 @@ def add_batch_arguments(parser: argparse.ArgumentParser) -> None:
     add = parser.add_argument
     add("inputs", nargs="+", metavar="INPUT", help="files, folders, glob patterns")
     add("--name", metavar="MASK", help="names of the outputs: {stem} {suffix} {folder} {number}")
+    add("--job", type=Path, metavar="FILE.toml", help="settings for files without their own")
     add("--workers", type=int, metavar="N", help="processes at a time (one per core)")
     add(
         "--timeout",

@@ -28,6 +28,7 @@ from .batch.plan import PlannedJob, plan_batch
 from .batch.rehearsal import DONE_BEFORE, TO_DO, rehearse
 from .batch.summary import total_seconds
 from .errors import InputError
+from .job import read_job_toml
 
 DONE: Final = 0
 FAILED: Final = 1
@@ -82,7 +83,8 @@ def _plan(
         _say(sys.stderr, f"wrinkle-cad: {note}")
     if not sources.files:
         raise InputError("input - no CAD file in the folders given - at least one - check the path")
-    return plan_batch(sources.files, folder, keywords=keywords, mask=given.name)
+    common = {} if given.job is None else read_job_toml(given.job)
+    return plan_batch(sources.files, folder, keywords=keywords, mask=given.name, common=common)
 
 
 def _rehearse(given: argparse.Namespace, planned: tuple[PlannedJob, ...], folder: Path) -> int:

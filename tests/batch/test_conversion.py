@@ -175,7 +175,7 @@ def test_a_disk_that_fills_up_stops_the_batch_which_goes_on_later(
     assert counts(bench.run()) == (2, 0, 2)
 
 
-@pytest.mark.parametrize("room", [0, 1, 100, 5000, 20_000, 40_000])
+@pytest.mark.parametrize("room", [0, 100, 5000, 40_000])
 def test_a_small_disk_leaves_nothing_half_written(bench: Bench, room: int) -> None:
     """The outputs' disk takes ``room`` bytes more, by a limit on the size of files."""
     bench.put(a="x" * 400, b="y" * 10)

@@ -148,7 +148,7 @@ def test_a_worker_that_dies_idle_costs_nothing(tmp_path: Path) -> None:
             crew.give(key, task)
             events = []
             while not events:
-                events = list(crew.wait())
+                events = list(crew.wait(1.0))
             pids.append(json.loads((tmp_path / "a.json").read_text())["pid"])
             os.kill(pids[-1], signal.SIGKILL)
             time.sleep(0.05)
@@ -163,7 +163,7 @@ def test_closing_lets_idle_workers_go(tmp_path: Path) -> None:
     crew = WorkerCrew(1, LIMITS)
     crew.give(0, Task(job=Job(input=source, output_dir=tmp_path), job_function=worker_id_job))
     while crew.is_busy():
-        crew.wait()
+        crew.wait(1.0)
     crew.close()
     assert_no_workers()
 

@@ -44,6 +44,16 @@ def test_settings_come_from_flags_then_the_file_then_its_folder(tmp_path: Path) 
     assert (b.tolerance, b.search, b.max_chord) == (0.2, "local", 5.0)
 
 
+def test_common_settings_hold_where_a_file_has_none_of_its_own(tmp_path: Path) -> None:
+    put(tmp_path, a="", x__b="", x__job_toml="tolerance = 0.2")
+    found = find_sources([str(tmp_path / "in")], tmp_path / "out")
+    common = {"tolerance": 0.4, "max_chord": 3.0, "output_dir": Path("/etc")}
+    a, b = (entry.job for entry in plan_batch(found.files, tmp_path / "out", common=common))
+    assert (a.tolerance, a.max_chord) == (0.4, 3.0)
+    assert (b.tolerance, b.max_chord) == (0.2, 3.0)
+    assert a.output_dir == tmp_path / "out"
+
+
 def test_settings_that_name_an_input_hold_for_that_file_only(tmp_path: Path) -> None:
     put(tmp_path, a="", b="", job_toml='input = "a.step"\ntolerance = 0.2')
     planned = plan(tmp_path)

@@ -75,6 +75,9 @@ def convert(
             folder.mkdir(parents=True, exist_ok=True)
             with locked_folder(folder):
                 return _Conversion(planned, folder, crew, listener, options).run()
+        except BrokenPipeError:
+            # The listener's: whoever read our lines went away.
+            raise
         except OSError as error:
             message = f"{error.strerror or error} - a folder that can be written, with room"
             raise ExportError(folder, "folder", f"{message} - correct it and run again") from error
@@ -173,7 +176,7 @@ class _Conversion:
                 self._finish(event.key, event.result)
         self._crew.close()
 
-    def _tasks(self) -> Iterator[tuple[int, Task]]:
+    def _tasks(self) -> Iterator[tuple[int, Task] | None]:
         for key, entry in enumerate(self._planned):
             try:
                 check_disk_space(self._folder, least_mib=self._options.least_disk_mib)
@@ -181,8 +184,7 @@ class _Conversion:
                 self._stopped_by = str(error)
                 return
             task = self._prepare(key, entry)
-            if task is not None:
-                yield key, task
+            yield None if task is None else (key, task)
 
     def _prepare(self, key: int, entry: PlannedJob) -> Task | None:
         """The task of a file, or None when it is done already or cannot be done."""

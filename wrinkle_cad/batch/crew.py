@@ -69,8 +69,8 @@ class Crew(Protocol):
     def give(self, key: int, task: Task) -> None:
         """Hands a task over; only when there is room."""
 
-    def wait(self) -> Sequence[Event]:
-        """Waits a moment and returns what has happened, possibly nothing."""
+    def wait(self, patience: float) -> Sequence[Event]:
+        """Waits some seconds at most and returns what has happened, possibly nothing."""
 
     def close(self) -> None:
         """Lets idle workers go; the crew takes no more tasks."""
@@ -185,12 +185,12 @@ class WorkerCrew:
         self._starts[key] = self._starts.get(key, 0) + 1
         worker.give(key, task)
 
-    def wait(self) -> Sequence[Event]:
-        """Waits until a worker says something, at most one tick."""
+    def wait(self, patience: float) -> Sequence[Event]:
+        """Waits until a worker says something, at most ``patience`` seconds."""
         watched: list[Connection | int] = []
         for worker in self._busy:
             watched += [worker.pipe, worker.chatter, worker.process.sentinel]
-        connection.wait(watched, timeout=settings.BATCH_TICK_S)
+        connection.wait(watched, timeout=patience)
         return [event for worker in tuple(self._busy) for event in self._look_at(worker)]
 
     def close(self) -> None:

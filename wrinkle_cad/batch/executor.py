@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import os
+import sys
 from collections.abc import Iterable, Iterator
 from concurrent.futures import Executor
 from dataclasses import replace
 from pathlib import Path, PurePosixPath
+from typing import Final
 
 from wrinkle_cad import settings
 from wrinkle_cad.errors import InputError
@@ -20,6 +22,13 @@ from .executor_crew import ExecutorCrew
 from .names import collision_key
 from .staging import discard_staging, open_staging
 from .task import JobFunction, Task
+
+
+class _End:
+    """No more tasks."""
+
+
+_END: Final = _End()
 
 
 def run_batch(
@@ -92,6 +101,11 @@ def make_crew(
                     " it up in the executor, or leave the executor out"
                 )
         return ExecutorCrew(executor, in_flight)
+    if sys.platform == "win32":
+        raise InputError(
+            "worker processes - their limits need a POSIX system - Linux or macOS - give run_batch"
+            " an executor of your own"
+        )
     if workers is not None and workers < 1:
         raise InputError(f"workers - {workers} - at least 1 - give more")
     limits = CrewLimits(
@@ -101,24 +115,28 @@ def make_crew(
     return WorkerCrew(workers or core_count(), limits)
 
 
-def run_tasks(crew: Crew, tasks: Iterator[tuple[int, Task]]) -> Iterator[Event | None]:
+def run_tasks(crew: Crew, tasks: Iterator[tuple[int, Task] | None]) -> Iterator[Event]:
     """Keeps a crew busy until the tasks are used up; tasks are asked for as room is made.
 
+    Args:
+        crew: who does the work.
+        tasks: number and task, or None for "nothing yet, ask again", so that a long search for the
+            next task does not keep the crew waiting.
+
     Yields:
-        What happens, and None at least once per tick.
+        What happens.
     """
     is_more = True
     while is_more or crew.is_busy():
-        while is_more and crew.has_room():
-            following = next(tasks, None)
-            if following is None:
+        if is_more and crew.has_room():
+            following = next(tasks, _END)
+            if isinstance(following, _End):
                 is_more = False
-            else:
+            elif following is not None:
                 crew.give(*following)
-            yield None
         if crew.is_busy():
-            yield from crew.wait()
-            yield None
+            is_idle = is_more and crew.has_room()
+            yield from crew.wait(0.0 if is_idle else settings.BATCH_TICK_S)
 
 
 def core_count() -> int:

@@ -54,9 +54,9 @@ class ExecutorCrew:
         self._keys[future] = key
         self._jobs[key] = task.job
 
-    def wait(self) -> Sequence[Event]:
-        """Waits until a task has ended, at most one tick."""
-        done, _ = wait(self._keys, settings.BATCH_TICK_S, FIRST_COMPLETED)
+    def wait(self, patience: float) -> Sequence[Event]:
+        """Waits until a task has ended, at most ``patience`` seconds."""
+        done, _ = wait(self._keys, patience, FIRST_COMPLETED)
         return [self._finish(future) for future in sorted(done, key=self._keys.__getitem__)]
 
     def close(self) -> None:

@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path, PurePosixPath
-from typing import Any, Final
+from typing import Any, Final, NamedTuple
 
 from wrinkle_cad import settings
 from wrinkle_cad.errors import JobError
@@ -33,17 +33,26 @@ class PlannedJob:
     """Why it cannot be done, on one line; empty when it can."""
 
 
+class _Layers(NamedTuple):
+    """Settings of the whole batch: below and above those of a file."""
+
+    common: dict[str, Any]
+    flags: dict[str, Any]
+
+
 def plan_batch(
     sources: Sequence[Source],
     output_dir: Path,
     *,
     keywords: Mapping[str, Any] | None = None,
     mask: str | None = None,
+    common: Mapping[str, Any] | None = None,
 ) -> tuple[PlannedJob, ...]:
     """Plans a batch; a file that cannot be done is planned with the reason.
 
-    A file's own settings are those in ``job.toml`` in its folder (unless that names another file as
-    its ``input``), then those in ``STEM.job.toml`` beside it, then the keywords. The folder of the
+    The keywords go before a file's own settings, and those before the common ones. A file's own
+    settings are those in ``STEM.job.toml`` beside it, then those in ``job.toml`` in its folder
+    (unless that names another file as its ``input``). The folder of the
     outputs is always the batch's. Of files whose outputs would have the same name, in the order
     given, only the first is done.
 
@@ -53,6 +62,7 @@ def plan_batch(
         keywords: settings for every file; a None counts as not given.
         mask: names of the outputs, as `check_mask` takes it; ``name`` in a file's own settings
             goes before the default mask but not before this one.
+        common: settings as `read_job_toml` gives them.
 
     Raises:
         JobError: the mask is broken.
@@ -60,9 +70,11 @@ def plan_batch(
     if mask is not None:
         check_mask(mask)
     taken: dict[str, Source] = {}
+    flags = {key: value for key, value in (keywords or {}).items() if value is not None}
+    layers = _Layers(_without_paths(common or {}), flags)
     planned = []
     for number, source in enumerate(sources, start=1):
-        entry = _plan_one(source, number, output_dir, dict(keywords or {}), mask)
+        entry = _plan_one(source, number, output_dir, layers, mask)
         first = taken.setdefault(collision_key(PurePosixPath(entry.key)), source)
         if first is not source and not entry.refusal:
             refusal = (
@@ -75,7 +87,7 @@ def plan_batch(
 
 
 def _plan_one(
-    source: Source, number: int, output_dir: Path, keywords: dict[str, Any], mask: str | None
+    source: Source, number: int, output_dir: Path, layers: _Layers, mask: str | None
 ) -> PlannedJob:
     stem, suffix = split_name(source.path.name)
     fill = partial(apply_mask, stem=stem, suffix=suffix, folder=source.folder, number=number)
@@ -84,11 +96,11 @@ def _plan_one(
     default_name = fill(mask or settings.BATCH_NAME_MASK)
     refusal = _unreadable_name(source)
     try:
-        own = _own_settings(source, stem)
+        own = {**layers.common, **_own_settings(source, stem)}
         if mask is None and "name" in own:
             default_name = safe_name(str(own["name"]))
-        merged = {**own, **{key: value for key, value in keywords.items() if value is not None}}
-        job = make_job(source.path, {**merged, "name": default_name, "output_dir": target})
+        merged = {**own, **layers.flags, "name": default_name, "output_dir": target}
+        job = make_job(source.path, merged)
     except JobError as error:
         refusal = refusal or str(error)
         job = Job(input=source.path, name=default_name, output_dir=target)
@@ -122,6 +134,9 @@ def _own_settings(source: Source, stem: str) -> dict[str, Any]:
         meant = table.get("input")
         if meant is None or Path(meant).resolve() == source.path.resolve():
             own.update(table)
-    own.pop("input", None)
-    own.pop("output_dir", None)
-    return own
+    return _without_paths(own)
+
+
+def _without_paths(table: Mapping[str, Any]) -> dict[str, Any]:
+    """Settings but for those that the batch decides itself."""
+    return {key: value for key, value in table.items() if key not in ("input", "output_dir")}
