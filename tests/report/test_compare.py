@@ -72,6 +72,9 @@ def test_the_page_shows_the_numbers_of_the_json(rows: dict[str, Comparison]) -> 
     for part in shown:
         value = json.loads(part.attributes["value"] or "")
         assert value == stored.get(part.attributes["data-path"] or "")
+    bold = [part for part in shown if part.parents[-1] == "b"]
+    best = {(part.attributes["data-path"] or "").split("/")[-1] for part in bold}
+    assert best == {"valid_bridges", "bending", "area_mm2", "max_fold_deg"}
     assert not reader.all("script")
     assert [part.text for part in reader.all("h2")] == [hostile]
     assert [part.text for part in reader.all("h1")] == ["lace & co.step"]

@@ -219,13 +219,17 @@ def test_all_tables_of_a_stitched_job_are_there(good_view: StripView) -> None:
         "max_edge_tolerance_mm": 2.1e-5,
         "area_balance_mm2": 0.0012,
         "is_valid": True,
+        "seams": [
+            {"seam": HOSTILE, "length_mm": 12.5, "mean_deg": 20.1, "largest_deg": 44.4},
+        ],
     }
     summary = summary_of([good_view], stitch=stitch)
     html = write_page(summary, [good_view])
     titles = [part.text for part in PageReader(html).all("h2")]
     assert titles == [
         "In space", "Validity matrix", "Along the strip", "Flat pattern", "Findings", "Strips",
-        "Seams and areas", "Sewn to the body", "Versions", "Seconds", "Settings",
+        "Seams and areas", "Sewn to the body", "Angles at the seams", "Versions", "Seconds",
+        "Settings",
     ]  # fmt: skip
     assert unequal_numbers(html, summary) == []
 
@@ -245,3 +249,13 @@ def test_numbers_read_as_people_write_them(
     value: float, unit: str, digits: int | None, text: str
 ) -> None:
     assert written(value, unit, digits) == text
+
+
+def test_of_several_strips_the_worst_gives_the_key_figures(
+    bad_view: StripView, good_view: StripView
+) -> None:
+    views = [good_view, bad_view]
+    html = write_page(summary_of(views), views)
+    assert "Worst strip: vamp wrinkle" in [part.text for part in PageReader(html).all("h2")]
+    tiles = [path for path, *_ in shown_numbers(html)][:4]
+    assert tiles[0] == "/strips/1/invalid_bridges"

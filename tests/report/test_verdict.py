@@ -79,6 +79,9 @@ def test_the_worst_strip_decides_for_the_job() -> None:
     verdict = judge([entry(), inflected, bad_entry()], Limits())
     assert verdict.state == "not-developable"
     assert verdict.headline == "Not developable: 1 of 3 strips."
+    assert judge([entry(), inflected], Limits()).headline == (
+        "Developable but for inflection rulings: all 2 strips."
+    )
     assert [strip.state for strip in verdict.strips] == [
         "developable",
         "inflection",
@@ -156,3 +159,21 @@ def test_the_verdict_is_plain_in_the_json() -> None:
     said = judge([bad_entry()], Limits(max_fold_deg=1.0)).as_json()
     assert said["passed"] is False
     assert said["strips"][0]["name"] == "wrinkle"
+
+
+def test_strips_and_bands_are_counted_apart() -> None:
+    inflected = entry(invalid_bridges=1, inflection_bridges=1, gaps=[{"kind": "inflection"}])
+    bands = [bad_entry(role="band"), bad_entry(role="band"), entry(role="band")]
+    strips = [entry(role="strip"), inflected | {"role": "strip"}]
+    assert judge([*strips, *bands], Limits()).headline == (
+        "Not developable: 2 of 3 bands. All 2 strips are developable but for inflection rulings."
+    )
+    assert judge([bad_entry(), entry(), bands[0]], Limits()).headline == (
+        "Not developable: 1 of 2 strips and the band."
+    )
+    assert judge([entry(), bands[0], bands[1]], Limits()).headline == (
+        "Not developable: all 2 bands. The strip is developable."
+    )
+    assert judge([entry(), entry(role="band")], Limits()).headline == (
+        "Developable: the strip and the band."
+    )

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import time
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict, dataclass
 from typing import Any, Final
 
@@ -27,6 +27,14 @@ METHODS: Final[tuple[tuple[str, str, tuple[str, ...], str], ...]] = (
     ("GMAT", "global", ("area",), "least area of all"),
 )
 """Name as in the paper, search, criteria and meaning."""
+
+
+_BEST: Final[tuple[tuple[str, Callable[..., Any]], ...]] = (
+    ("valid_bridges", max),
+    ("bending", min),
+    ("area_mm2", min),
+    ("max_fold_deg", min),
+)
 
 
 @dataclass(frozen=True, slots=True)
@@ -164,28 +172,32 @@ def _strip_card(numbers: Numbers, at: int) -> Element:
         ("Time", True),
     )
     strip = numbers.get(f"/strips/{at}")
+    best = {key: pick(row[key] for row in strip["methods"]) for key, pick in _BEST}
     rows = []
     for number, method in enumerate(strip["methods"]):
         row = f"/strips/{at}/methods/{number}"
         shown = (
-            numbers.show(f"{row}/valid_bridges"),
-            numbers.show(f"{row}/bridges"),
-            numbers.show(f"{row}/bending"),
-            numbers.show(f"{row}/area_mm2", "mm²", 2),
-            numbers.show(f"{row}/max_fold_deg", "°", 2),
-            numbers.show(f"{row}/seconds", "s", 4),
+            ("valid_bridges", numbers.show(f"{row}/valid_bridges")),
+            ("bridges", numbers.show(f"{row}/bridges")),
+            ("bending", numbers.show(f"{row}/bending")),
+            ("area_mm2", numbers.show(f"{row}/area_mm2", "mm²", 2)),
+            ("max_fold_deg", numbers.show(f"{row}/max_fold_deg", "°", 2)),
+            ("seconds", numbers.show(f"{row}/seconds", "s", 4)),
         )
         rows.append(
             node(
                 "tr",
                 cell(method["method"], kind="word"),
                 cell(method["meaning"], kind="text"),
-                *(cell(figure, right=True) for figure in shown),
+                *(
+                    cell(node("b", figure) if best.get(key) == method[key] else figure, right=True)
+                    for key, figure in shown
+                ),
             )
         )
     note = (
-        "Methods of Wang and Tang, Developable Triangulations of a Strip. Bending energies compare"
-        " only within one strip and one kind of energy."
+        "Methods of Wang and Tang, Developable Triangulations of a Strip; the best of each column is"
+        " bold. Bending energies compare only within one strip and one kind of energy."
     )
     return node(
         "section",

@@ -25,7 +25,7 @@ _PATTERN_LAYERS: Final = (
 
 
 def figures_panel(numbers: Numbers) -> Element:
-    """The key figures of the first strip, or of each strip's worst, as tiles."""
+    """The key figures of the strip with the largest share of invalid rail, as tiles."""
     worst = _worst_strip(numbers)
     entry, said = f"/strips/{worst}", f"/verdict/strips/{worst}"
     of = node("small", " of ", numbers.show(f"{entry}/interior_bridges"))
@@ -41,7 +41,7 @@ def figures_panel(numbers: Numbers) -> Element:
         ("Area of the pattern", [numbers.show(f"{entry}/area_pattern_mm2", "mm²", 1)]),
         ("Price of developability", [numbers.show(f"{said}/price_of_developability", TIMES, 2)]),
     )
-    return node(
+    shown = node(
         "dl",
         *(
             node("div", node("dt", title), node("dd", *parts), class_="tile")
@@ -49,6 +49,10 @@ def figures_panel(numbers: Numbers) -> Element:
         ),
         class_="tiles",
     )
+    if len(numbers.get("/strips")) == 1:
+        return shown
+    words = f"Worst strip: {numbers.get(f'{entry}/name')}"
+    return node("section", node("h2", words, class_="head"), shown)
 
 
 def _worst_strip(numbers: Numbers) -> int:

@@ -14,6 +14,8 @@ _STITCH_ROWS: Final = (
     ("Free edges before", "free_edges_before", ""),
     ("Free edges after", "free_edges_after", ""),
     ("Largest edge tolerance", "max_edge_tolerance_mm", "mm"),
+    ("Faces", "faces", ""),
+    ("Area", "area_mm2", "mm²"),
     ("Area balance", "area_balance_mm2", "mm²"),
 )
 
@@ -63,6 +65,7 @@ def tables_panel(numbers: Numbers) -> list[Element]:
     small = [
         _seams_card(numbers),
         _stitch_card(numbers),
+        _angles_card(numbers),
         _pairs_card(numbers, "Versions", "/versions"),
         _pairs_card(numbers, "Seconds", "/seconds", unit="s", digits=3),
     ]
@@ -257,10 +260,27 @@ def _stitch_card(numbers: Numbers) -> Element | None:
         for title, key, unit in _STITCH_ROWS
         if key in stitch
     ]
-    rows.append(
-        node("tr", cell("Valid solid geometry"), cell("yes" if stitch["is_valid"] else "no"))
-    )
+    rows.append(node("tr", cell("Valid geometry"), cell("yes" if stitch["is_valid"] else "no")))
     return _card("Sewn to the body", table((("", False), ("", True)), rows))
+
+
+def _angles_card(numbers: Numbers) -> Element | None:
+    """How sharply the surface turns at each seam of the stitched shell."""
+    seams = numbers.get("/stitch/seams")
+    if not seams:
+        return None
+    columns = (("Seam", False), ("Length", True), ("Mean angle", True), ("Largest", True))
+    rows = []
+    for at, seam in enumerate(seams):
+        path = f"/stitch/seams/{at}"
+        shown = (
+            numbers.show(f"{path}/length_mm", "mm", 2),
+            numbers.show(f"{path}/mean_deg", "°", 1),
+            numbers.show(f"{path}/largest_deg", "°", 1),
+        )
+        name = cell(seam["seam"], kind="name")
+        rows.append(node("tr", name, *(cell(figure, right=True) for figure in shown)))
+    return _card("Angles at the seams", table(columns, rows))
 
 
 def _pairs_card(

@@ -15,6 +15,7 @@ from .material import Limits
 State = Literal["developable", "inflection", "not-developable"]
 
 _WORST_FIRST: Final[tuple[State, ...]] = ("not-developable", "inflection", "developable")
+_BUT_FOR: Final = {"developable": "", "inflection": " but for inflection rulings"}
 _MEANING: Final[dict[State, str]] = {
     "developable": "Flat material can be bent into this shape without stretching.",
     "inflection": (
@@ -84,7 +85,7 @@ def judge(entries: Sequence[Mapping[str, Any]], limits: Limits) -> Verdict:
     states = {strip.state for strip in strips}
     state = next((state for state in _WORST_FIRST if state in states), _WORST_FIRST[-1])
     missed = tuple(line for strip in strips for line in strip.missed)
-    headline = strips[0].sentence if len(strips) == 1 else _headline(state, strips)
+    headline = strips[0].sentence if len(strips) == 1 else _headline(state, entries, strips)
     return Verdict(
         state=state,
         headline=headline,
@@ -192,13 +193,32 @@ def _sentence(entry: Mapping[str, Any], state: State) -> str:
     )
 
 
-def _headline(state: State, strips: Sequence[StripVerdict]) -> str:
-    bad = sum(strip.state == "not-developable" for strip in strips)
-    if state == "not-developable":
-        return f"Not developable: {bad} of {len(strips)} strips."
-    if state == "inflection":
-        return f"Developable but for inflection rulings: all {len(strips)} strips."
-    return f"Developable: all {len(strips)} strips."
+def _headline(
+    state: State, entries: Sequence[Mapping[str, Any]], strips: Sequence[StripVerdict]
+) -> str:
+    """One line on several strips: how many are bad, strips and bands apart."""
+    states: dict[str, list[State]] = {}
+    for entry, strip in zip(entries, strips, strict=True):
+        states.setdefault(entry.get("role", "strip"), []).append(strip.state)
+    if state != "not-developable":
+        counts = " and ".join(_all_of(len(own), role) for role, own in states.items())
+        return f"Developable{_BUT_FOR[state]}: {counts}."
+    bad, good = [], []
+    for role, own in states.items():
+        count = own.count("not-developable")
+        if count:
+            some = f"{count} of {len(own)} {role}s"
+            bad.append(_all_of(count, role) if count == len(own) else some)
+        else:
+            worst = "inflection" if "inflection" in own else "developable"
+            every = _all_of(len(own), role)
+            verb = "is" if len(own) == 1 else "are"
+            good.append(f" {every.capitalize()} {verb} developable{_BUT_FOR[worst]}.")
+    return f"Not developable: {' and '.join(bad)}.{''.join(good)}"
+
+
+def _all_of(count: int, role: str) -> str:
+    return f"the {role}" if count == 1 else f"all {count} {role}s"
 
 
 def _overlap_words(entries: Sequence[Mapping[str, Any]]) -> str:

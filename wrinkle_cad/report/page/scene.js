@@ -136,7 +136,7 @@ Report.space = (canvas, panel) => {
     items.forEach((item) => { if (item.group.visible) box.expandByObject(item.group); });
     if (solid && solid.visible) whole.expandByObject(solid);
     const half = (space) => (space.isEmpty() ? 0 : space.getSize(new THREE.Vector3()).length() / 2);
-    const radius = box.isEmpty() ? half(whole) : Math.min(Math.max(half(box), half(whole)), 1.2 * half(box));
+    const radius = box.isEmpty() ? half(whole) : Math.min(Math.max(half(box), half(whole)), 1.35 * half(box));
     if (!(radius > 0)) return;
     const middle = (box.isEmpty() ? whole : box).getCenter(new THREE.Vector3());
     const fit = radius / Math.sin((camera.fov * Math.PI) / 360) / Math.min(1, camera.aspect) * 0.8;
