@@ -7,14 +7,12 @@ layers, materials.
 
 from __future__ import annotations
 
-import contextlib
-import gc
-from collections.abc import Iterator
 from pathlib import Path
 
 from wrinkle_cad import settings
 from wrinkle_cad.errors import InputError
 
+from .loading import kernel_importable
 from .shapes import CadFile
 from .sniff import BREP, IGES, STEP, read_source
 from .units import MM_PER_UNIT
@@ -37,23 +35,12 @@ def read_cad(
     Raises:
         InputError: the file cannot be read; the message names the true cause. Also if ``unit``
             contradicts what the file declares.
+        CadError: the kernel cannot be loaded.
     """
     if unit is not None and unit not in MM_PER_UNIT:
         raise InputError(f"unit - found {unit!r} - one of {', '.join(MM_PER_UNIT)}")
     source = read_source(Path(path), size_limit=size_limit)
-    with _fast_import():
+    with kernel_importable():
         from . import read_brep, read_iges, read_step
     readers = {STEP: read_step.read, BREP: read_brep.read, IGES: read_iges.read}
     return readers[source.format](source, unit)
-
-
-@contextlib.contextmanager
-def _fast_import() -> Iterator[None]:
-    # The kernel's classes are some 10^5 objects that the collector would walk again and again.
-    was_enabled = gc.isenabled()
-    gc.disable()
-    try:
-        yield
-    finally:
-        if was_enabled:
-            gc.enable()
