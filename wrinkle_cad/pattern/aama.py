@@ -105,15 +105,17 @@ def _block_name(piece: PatternPiece, taken: set[str]) -> str:
 
 
 def _write_texts(block: BlockLayout, piece: PatternPiece, profile: Profile) -> list[Finding]:
-    name, size, material = map(ascii_text, (piece.name, piece.size, piece.material))
+    name = _stated(piece.name) or "PIECE"
+    size = _stated(piece.size) or settings.PIECE_SIZE
+    material = _stated(piece.material)
     findings = [
         *text_changed("piece name", piece.name, name),
         *text_changed("size", piece.size, size),
         *text_changed("material", piece.material, material),
     ]
     system = [
-        f"Piece Name: {name or 'PIECE'}",
-        f"Size: {size or settings.PIECE_SIZE}",
+        f"Piece Name: {name}",
+        f"Size: {size}",
         f"Quantity: {piece.quantity},1",
     ]
     if material:
@@ -131,6 +133,11 @@ def _write_texts(block: BlockLayout, piece: PatternPiece, profile: Profile) -> l
         below = corner - np.array((0.0, 1.5 * height * len(system)))
         _write_column(block, notes, profile.styles["text"].layer, below, height)
     return findings
+
+
+def _stated(text: str) -> str:
+    """Returns a text short enough to stand behind a key."""
+    return ascii_text(text, longest=200)
 
 
 def _write_column(
@@ -219,13 +226,12 @@ def _write_marks(block: BlockLayout, piece: PatternPiece, profile: Profile) -> N
 def _write_style(
     document: DxfDocument, pieces: Sequence[PatternPiece], timestamp: datetime
 ) -> None:
-    name = ascii_text(pieces[0].name) or "PIECE"
     lines = (
-        f"Style Name: {name}",
+        f"Style Name: {_stated(pieces[0].name) or 'PIECE'}",
         f"Creation Date: {timestamp:%d-%m-%Y}",
         f"Creation Time: {timestamp:%H:%M}",
         "Author: wrinkle-cad",
-        f"Sample Size: {ascii_text(pieces[0].size) or settings.PIECE_SIZE}",
+        f"Sample Size: {_stated(pieces[0].size) or settings.PIECE_SIZE}",
         "Units: METRIC",
         f"Curve Tolerance: {max(piece.tolerance for piece in pieces):g}",
         "ASTM/D13Proposal 1 Version: D 6673-10",

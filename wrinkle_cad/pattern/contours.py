@@ -60,7 +60,7 @@ def closed_spline(points: Floats, *, tolerance: float) -> BSpline:
         [_fitted(ring[first : stop + 1], tolerance) for first, stop in pairwise(corners)]
     )
     outline = np.array([(point.x, point.y) for point in smooth.flattening(0.1 * tolerance)])
-    if shapely.Polygon(outline).is_valid:
+    if shapely.Polygon(outline[:-1]).is_valid:
         return smooth
     return _joined([_straight(ring)])
 
@@ -148,9 +148,7 @@ def _arc_bulge(run: Floats, tolerance: float) -> float | None:
         return None
     along = chord / length
     across = np.array((along[1], -along[0]))
-    middles = 0.5 * (run[1:] + run[:-1])
-    offsets = np.vstack((run, middles)) - run[0]
-    x, y = offsets @ along - 0.5 * length, offsets @ across
+    x, y = (run - run[0]) @ along - 0.5 * length, (run - run[0]) @ across
     x_mid, rise = x[len(run) // 2], y[len(run) // 2]
     # The circle through (-c, 0), (c, 0) and the middle vertex: x^2 + y^2 - 2 e y = c^2.
     half = 0.5 * length
@@ -158,7 +156,13 @@ def _arc_bulge(run: Floats, tolerance: float) -> float | None:
         return 0.0 if float(np.abs(y).max()) <= tolerance else None
     centre = (x_mid**2 + rise**2 - half**2) / (2.0 * rise)
     radius = float(np.hypot(half, centre))
-    if float(np.abs(np.hypot(x, y - centre) - radius).max()) > tolerance:
+    # A segment is furthest from the circle at an end or where it is nearest to the centre.
+    steps = np.column_stack((np.diff(x), np.diff(y)))
+    from_centre = np.column_stack((x, y - centre))
+    share = -np.sum(from_centre[:-1] * steps, axis=1) / np.sum(steps**2, axis=1)
+    feet = from_centre[:-1] + np.clip(share, 0.0, 1.0)[:, None] * steps
+    reach = np.linalg.norm(np.vstack((from_centre, feet)), axis=1)
+    if float(np.abs(reach - radius).max()) > tolerance:
         return None
     # The arc bulges to the side of the middle vertex; no more than half a circle at once.
     sagitta = radius - abs(centre) if centre * rise <= 0.0 else radius + abs(centre)

@@ -219,8 +219,8 @@ def _both_hands(piece: PatternPiece, chosen: PieceSettings) -> tuple[PatternPiec
     other: Hand = "right" if chosen.hand == "left" else "left"
     label = piece.name
     return (
-        replace(piece, name=f"{label} {chosen.hand.upper()}", hand=chosen.hand),
-        piece.mirrored(name=f"{label} {other.upper()}", hand=other),
+        replace(piece, name=f"{label} {chosen.hand.upper()}".strip(), hand=chosen.hand),
+        piece.mirrored(name=f"{label} {other.upper()}".strip(), hand=other),
     )
 
 

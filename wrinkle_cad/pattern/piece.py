@@ -117,7 +117,7 @@ class PatternPiece:
     @property
     def texts(self) -> tuple[str, ...]:
         """What is written on the piece, line by line."""
-        lines = [self.name, f"SIZE {self.size}", f"QUANTITY {self.quantity}"]
+        lines = [self.name, f"SIZE {self.size}".strip(), f"QUANTITY {self.quantity}"]
         if self.material:
             lines.append(f"MATERIAL {self.material}")
         lines.append(f"UNITS MM, CHORD TOLERANCE {self.tolerance:g} MM")

@@ -44,15 +44,21 @@ def ascii_text(text: str, *, longest: int = LONGEST_TEXT) -> str:
     for letter in text:
         spelled = _SPELLED.get(letter)
         if spelled is None:
-            kept = "".join(
-                part for part in unicodedata.normalize("NFKD", letter) if " " <= part <= "~"
-            )
-            is_mark = unicodedata.category(letter) in ("Mn", "Cf")
-            spelled = kept or ("" if is_mark else " " if letter.isspace() else "?")
+            spelled = "".join(map(_plain_letter, unicodedata.normalize("NFKD", letter)))
         plain.append(spelled)
     # %% and \U+ are escapes to CAD programs; ^ starts a control character in DXF.
     line = "".join(plain).replace("%%", "% %").replace("\\", "/").replace("^", " ")
     return re.sub(r" {2,}", " ", line).strip()[:longest].strip()
+
+
+def _plain_letter(letter: str) -> str:
+    if " " <= letter <= "~":
+        return letter
+    if letter == "\N{FRACTION SLASH}":
+        return "/"
+    if unicodedata.category(letter) in ("Mn", "Cf"):
+        return ""
+    return " " if letter.isspace() else "?"
 
 
 def ascii_name(text: str, *, longest: int) -> str:
@@ -76,7 +82,7 @@ def text_changed(what: str, before: str, after: str) -> tuple[Finding, ...]:
         Finding(
             "text-changed",
             "info",
-            f"{what} {shown} - not plain ASCII of one line - written as {after!r} - rename it if "
-            "that is not clear enough",
+            f"{what} {shown} - not what the file can hold - written as {after!a} - rename it "
+            "if that is not clear enough",
         ),
     )

@@ -18,11 +18,13 @@ from ezdxf.colors import aci2rgb
 from wrinkle_cad import settings
 from wrinkle_cad.atomic import write_atomically
 from wrinkle_cad.errors import ExportError, InputError
+from wrinkle_cad.findings import Finding
 
 from .drawing import Label, Spot, Stroke, draw
 from .layers import LINE_TYPES, LayerStyle, Profile, profile_from
 from .nesting import laid_out
 from .piece import Floats, PatternPiece
+from .plain_text import text_changed
 
 _MARGIN: Final = 10.0
 """mm around everything."""
@@ -71,8 +73,10 @@ def write_svg(
     pieces: Sequence[PatternPiece],
     *,
     profile: str | Path | Profile = settings.DXF_PROFILE,
-) -> None:
-    """Writes an SVG file, whole or not at all; see ``svg_bytes``.
+) -> tuple[Finding, ...]:
+    """Writes an SVG file, whole or not at all, and returns which texts had to be changed.
+
+    The other arguments are those of ``svg_bytes``.
 
     Raises:
         InputError: as ``svg_bytes``.
@@ -83,6 +87,10 @@ def write_svg(
         write_atomically(path, content)
     except OSError as error:
         raise ExportError(path, "SVG", f"{error.strerror} - check the folder") from error
+    texts = [text for piece in pieces for text in piece.texts]
+    return tuple(
+        finding for text in texts for finding in text_changed("text in the SVG", text, _plain(text))
+    )
 
 
 def colour_of(style: LayerStyle) -> str:
@@ -157,4 +165,9 @@ def _number(value: float) -> str:
 
 
 def _escaped(text: str) -> str:
-    return escape(_NOT_XML.sub(" ", text))
+    return escape(_plain(text))
+
+
+def _plain(text: str) -> str:
+    """Returns a text on one line, without what XML does not allow even escaped."""
+    return " ".join(_NOT_XML.sub(" ", text).split())
