@@ -162,6 +162,9 @@ SPAN_SLACK: Final = 1e-9
 MATRIX_OVERVIEW: Final = 640
 """Pixels on the longer side of the page's overview of a validity matrix, at most."""
 
+MATRIX_BRIDGES: Final = 50_000_000
+"""The page shows no validity matrix of more possible bridges: they alone would take 50 MB."""
+
 MATRIX_TILE: Final = 500
 """Bridges on a side of one tile of a validity matrix in the page."""
 

@@ -29,6 +29,19 @@ METHODS: Final[tuple[tuple[str, str, tuple[str, ...], str], ...]] = (
 """Name as in the paper, search, criteria and meaning."""
 
 
+_FIGURES: Final[tuple[tuple[str, str, str, int | None], ...]] = (
+    ("Valid bridges", "valid_bridges", "", None),
+    ("of", "bridges", "", None),
+    ("Bending energy", "bending", "", None),
+    ("Area", "area_mm2", "mm²", 2),
+    ("Largest fold", "max_fold_deg", "°", 2),
+    ("Time", "seconds", "s", 4),
+)
+_COLUMNS: Final = (
+    ("Method", False),
+    ("Looks for", False),
+    *((title, True) for title, *_ in _FIGURES),
+)
 _BEST: Final[tuple[tuple[str, Callable[..., Any]], ...]] = (
     ("valid_bridges", max),
     ("bending", min),
@@ -161,48 +174,34 @@ def write_comparison_page(summary: Mapping[str, Any]) -> str:
 
 
 def _strip_card(numbers: Numbers, at: int) -> Element:
-    columns = (
-        ("Method", False),
-        ("Looks for", False),
-        ("Valid bridges", True),
-        ("of", True),
-        ("Bending energy", True),
-        ("Area", True),
-        ("Largest fold", True),
-        ("Time", True),
-    )
     strip = numbers.get(f"/strips/{at}")
     best = {key: pick(row[key] for row in strip["methods"]) for key, pick in _BEST}
-    rows = []
-    for number, method in enumerate(strip["methods"]):
-        row = f"/strips/{at}/methods/{number}"
-        shown = (
-            ("valid_bridges", numbers.show(f"{row}/valid_bridges")),
-            ("bridges", numbers.show(f"{row}/bridges")),
-            ("bending", numbers.show(f"{row}/bending")),
-            ("area_mm2", numbers.show(f"{row}/area_mm2", "mm²", 2)),
-            ("max_fold_deg", numbers.show(f"{row}/max_fold_deg", "°", 2)),
-            ("seconds", numbers.show(f"{row}/seconds", "s", 4)),
+    rows = [
+        node(
+            "tr",
+            cell(method["method"], kind="word"),
+            cell(method["meaning"], kind="text"),
+            *_figure_cells(numbers, f"/strips/{at}/methods/{number}", best),
         )
-        rows.append(
-            node(
-                "tr",
-                cell(method["method"], kind="word"),
-                cell(method["meaning"], kind="text"),
-                *(
-                    cell(node("b", figure) if best.get(key) == method[key] else figure, right=True)
-                    for key, figure in shown
-                ),
-            )
-        )
+        for number, method in enumerate(strip["methods"])
+    ]
     note = (
-        "Methods of Wang and Tang, Developable Triangulations of a Strip; the best of each column is"
-        " bold. Bending energies compare only within one strip and one kind of energy."
+        "Methods of Wang and Tang, Developable Triangulations of a Strip; the best of each column"
+        " is bold. Bending energies compare only within one strip and one kind of energy."
     )
     return node(
         "section",
         node("h2", strip["name"], class_="head"),
-        table(columns, rows),
+        table(_COLUMNS, rows),
         node("p", note, class_="note"),
         class_="card",
     )
+
+
+def _figure_cells(numbers: Numbers, row: str, best: Mapping[str, float]) -> list[Element]:
+    cells = []
+    for _, key, unit, digits in _FIGURES:
+        shown = numbers.show(f"{row}/{key}", unit, digits)
+        is_best = key in best and numbers.get(f"{row}/{key}") == best[key]
+        cells.append(cell(node("b", shown) if is_best else shown, right=True))
+    return cells

@@ -50,7 +50,7 @@ def _shades(valid: NDArray[np.bool_], block: int) -> NDArray[np.uint8]:
     m, n = valid.shape
     rows = np.arange(0, m, block)
     columns = np.arange(0, n, block)
-    count = np.add.reduceat(valid.astype(np.int32), rows, axis=0)
+    count = np.add.reduceat(valid, rows, axis=0, dtype=np.int32)
     count = np.add.reduceat(count, columns, axis=1)
     size = np.outer(np.diff(rows, append=m), np.diff(columns, append=n))
     share = count / size
