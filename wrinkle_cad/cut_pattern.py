@@ -61,6 +61,21 @@ class Pattern:
         pairs = zip(self.strip_index, self.pieces, strict=True)
         return tuple(piece for index, piece in pairs if index == strip_index)
 
+    def notch_arcs(self, strip_index: int, side: int) -> tuple[float, ...]:
+        """Where one strip has notches on one side, in mm along the rail in space, ascending.
+
+        Args:
+            strip_index: of the strip.
+            side: 0 for P, 1 for Q.
+        """
+        arcs = {
+            notch.arc
+            for piece in self.pieces_of(strip_index)
+            for notch in piece.notches
+            if notch.side == side
+        }
+        return tuple(sorted(arcs))
+
     @property
     def findings(self) -> tuple[Finding, ...]:
         """What was noticed while the pieces were made."""

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from . import settings
 from .errors import InputError
@@ -103,6 +103,27 @@ class TriangulatedStrip:
         from .cad.guests import to_build123d
 
         return to_build123d(self.topods_shell(surface), label=self.name, color=self.color)
+
+    def rail_points(self, rail: str, arcs_mm: ArrayLike) -> NDArray[np.float64]:
+        """Points on the surface's edge at arc lengths from the rail's start.
+
+        Args:
+            rail: ``P`` or ``Q``.
+            arcs_mm: (k,) along the edge: the curve for cones, its chords for facets.
+
+        Returns:
+            (k, 3) float64, mm.
+
+        Raises:
+            InputError: an arc length lies beyond the edge.
+        """
+        from .cad.directrix import make_directrix
+        from .cad.rail_points import points_at_arcs
+
+        curve, samples = (self.p, self.p_samples) if rail == "P" else (self.q, self.q_samples)
+        if self.surface == "facets":
+            curve = make_directrix(samples.points)
+        return points_at_arcs(curve, arcs_mm)
 
     @cached_property
     def unrolling(self) -> Unrolling:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import datetime
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -44,7 +44,8 @@ def write_shapes(job: Job, made: Made, paths: Mapping[str, Path]) -> None:
     from .cad.write import write_step, write_stl
 
     parts = _parts_of(made)
-    write_step(paths["step"], parts, schema=job.step_schema, timestamp=timestamp_of(job))
+    everything = [*parts, *_notch_parts(made)]
+    write_step(paths["step"], everything, schema=job.step_schema, timestamp=timestamp_of(job))
     shapes = [part.shape for part in parts]
     meshed = shapes[0] if len(shapes) == 1 else make_compound(shapes)
     write_stl(paths["stl"], meshed, tolerance=job.tolerance)
@@ -95,6 +96,25 @@ def _parts_of(made: Made) -> Sequence[Part]:
     if made.upper is not None:
         return [Part(made.upper.stitched.shell_shape, made.upper_name, settings.UPPER_COLOR)]
     return [Part(strip.topods_shell(), strip.name, strip.color) for strip in made.strips]
+
+
+def _notch_parts(made: Made) -> Iterator[Part]:
+    """A named point for every notch, once for two pieces that are sewn together there."""
+    from .cad.kernel import make_vertex
+    from .cad.shapes import Part
+
+    seen: set[int] = set()
+    for index, strip in enumerate(made.strips):
+        for side, rail in enumerate("PQ"):
+            samples = strip.p_samples if rail == "P" else strip.q_samples
+            if id(samples) in seen:
+                continue
+            seen.add(id(samples))
+            arcs = made.pattern.notch_arcs(index, side)
+            # The rail of a band that no wrinkle has is the edge of the opening.
+            place = "opening" if strip.role == "band" else rail
+            for number, point in enumerate(strip.rail_points(rail, arcs), start=1):
+                yield Part(make_vertex(point), f"{strip.name} {place} notch {number}")
 
 
 def _body_view(made: Made) -> MeshView | None:
