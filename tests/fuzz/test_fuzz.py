@@ -30,7 +30,7 @@ def sources(request: pytest.FixtureRequest) -> list[Path]:
 
 
 def test_200_damaged_files_end_as_done_or_as_one_line(tmp_path: Path, sources: list[Path]) -> None:
-    figures, _ = run(tmp_path, 200, 1, sources, timeout_s=10.0)
+    figures, _ = run(tmp_path, 200, 1, sources, timeout_s=20.0)
     assert not figures.bugs
     assert figures.done + figures.failures.total() == 200
     assert figures.done > 0, "some damage is harmless"

@@ -30,6 +30,7 @@ body {{ margin: 1.5rem auto; max-width: 75rem; padding: 0 1rem; }}
 table {{ border-collapse: collapse; width: 100%; }}
 th, td {{ text-align: left; padding: .35rem .6rem; border-bottom: 1px solid #8884; }}
 td {{ vertical-align: top; overflow-wrap: anywhere; }}
+td:first-child {{ min-width: 16rem; }}
 th button {{ all: unset; cursor: pointer; font-weight: 600; }}
 th button:focus-visible {{ outline: 2px solid; }}
 .number {{ text-align: right; font-variant-numeric: tabular-nums; white-space: nowrap; }}
