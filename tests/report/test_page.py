@@ -243,6 +243,8 @@ def test_all_tables_of_a_stitched_job_are_there(good_view: StripView) -> None:
         (-1.5, "mm", 3, "\N{MINUS SIGN}1.500\N{NO-BREAK SPACE}mm"),
         (12345.678, "mm²", 1, "12,345.7\N{NO-BREAK SPACE}mm²"),
         (2.1e-5, "", None, "2.1e-05"),
+        (41783.77, "mm²", None, "41,784\N{NO-BREAK SPACE}mm²"),
+        (999.96, "", None, "1000"),
     ],
 )
 def test_numbers_read_as_people_write_them(

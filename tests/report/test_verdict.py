@@ -80,7 +80,7 @@ def test_the_worst_strip_decides_for_the_job() -> None:
     assert verdict.state == "not-developable"
     assert verdict.headline == "Not developable: 1 of 3 strips."
     assert judge([entry(), inflected], Limits()).headline == (
-        "Developable but for inflection rulings: all 2 strips."
+        "Developable but for inflection rulings: both strips."
     )
     assert [strip.state for strip in verdict.strips] == [
         "developable",
@@ -166,13 +166,13 @@ def test_strips_and_bands_are_counted_apart() -> None:
     bands = [bad_entry(role="band"), bad_entry(role="band"), entry(role="band")]
     strips = [entry(role="strip"), inflected | {"role": "strip"}]
     assert judge([*strips, *bands], Limits()).headline == (
-        "Not developable: 2 of 3 bands. All 2 strips are developable but for inflection rulings."
+        "Not developable: 2 of 3 bands. Both strips are developable but for inflection rulings."
     )
     assert judge([bad_entry(), entry(), bands[0]], Limits()).headline == (
         "Not developable: 1 of 2 strips and the band."
     )
     assert judge([entry(), bands[0], bands[1]], Limits()).headline == (
-        "Not developable: all 2 bands. The strip is developable."
+        "Not developable: both bands. The strip is developable."
     )
     assert judge([entry(), entry(role="band")], Limits()).headline == (
         "Developable: the strip and the band."

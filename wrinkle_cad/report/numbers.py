@@ -62,8 +62,10 @@ def written(value: float, unit: str = "", digits: int | None = None) -> str:
         text = f"{value:,.{digits}f}"
         if float(text.replace(",", "")) == 0.0:
             text = "0"
+    elif 1e3 <= abs(value) < 1e9:
+        text = f"{value:,.0f}"
     else:
-        text = f"{value:,.4g}"
+        text = f"{value:.4g}"
     if text.startswith("-"):
         text = "\N{MINUS SIGN}" + text[1:]
     if not unit:

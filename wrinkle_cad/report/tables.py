@@ -260,7 +260,9 @@ def _stitch_card(numbers: Numbers) -> Element | None:
         for title, key, unit in _STITCH_ROWS
         if key in stitch
     ]
-    rows.append(node("tr", cell("Valid geometry"), cell("yes" if stitch["is_valid"] else "no")))
+    rows.append(
+        node("tr", cell("Valid geometry"), cell("yes" if stitch["is_valid"] else "no", right=True))
+    )
     return _card("Sewn to the body", table((("", False), ("", True)), rows))
 
 

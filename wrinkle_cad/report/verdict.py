@@ -218,7 +218,9 @@ def _headline(
 
 
 def _all_of(count: int, role: str) -> str:
-    return f"the {role}" if count == 1 else f"all {count} {role}s"
+    if count == 1:
+        return f"the {role}"
+    return f"both {role}s" if count == 2 else f"all {count} {role}s"
 
 
 def _overlap_words(entries: Sequence[Mapping[str, Any]]) -> str:
