@@ -101,7 +101,7 @@ CONFUSION: Final = 1e-7
 LENGTH_ERROR: Final = 1e-9
 """mm; how exactly the CAD kernel integrates the length of an edge."""
 
-AREA_RELATIVE_ERROR: Final = 1e-9
+AREA_RELATIVE_ERROR: Final = 1e-8
 """How exactly the CAD kernel integrates the area of a face; its own default is some 1e-5."""
 
 AREA_ORDERS: Final = (1e-12, 1e-16, 1e-20, 1e-30)
@@ -253,6 +253,12 @@ THIN_FACE_PER_SIZE: Final = 5e-7
 KNOT_GAP: Final = 1e-9
 """mm; knots of a rail nearer to one another than this are one knot."""
 
+KNOT_TURN: Final = 0.4
+"""rad; a cone gets knots until its normal turns by no more than this between two of them."""
+
+KNOT_HALVINGS: Final = 12
+"""How often a span of a cone is halved for that, at most."""
+
 PLANE_GAP: Final = 2e-8
 """mm; a curve and an apex within this of one plane make a planar face instead of a cone."""
 
@@ -341,3 +347,9 @@ its extra valid bridges were bought with folds."""
 
 AREA_BALANCE_ORDERS: Final = (1e-3, 1e-5, 1e-7, 1e-9, 1e-12)
 """Error bounds that make the CAD kernel choose ever higher orders, from the fastest."""
+
+SEWN_DIRECTLY: Final = 5e-4
+"""mm; a profile that stays nearer to the opening's boundary than this is sewn to it directly."""
+
+BAND_OVERHANG_LIMIT: Final = 0.02
+"""The share of a band that may face into the upper; more of it has folded over."""

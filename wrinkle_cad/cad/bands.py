@@ -24,6 +24,7 @@ from wrinkle_cad.strip.triangulation import Triangulation, triangulate
 from .border import edge_ends
 from .directrix import Directrix, make_directrix, sample_directrix
 from .faces import build_shell
+from .opening import Opening
 
 Floats = NDArray[np.float64]
 
@@ -99,39 +100,35 @@ def _straight(start: Floats, end: Floats) -> TopoDS_Edge:
 
 
 def make_band(
-    edges: Sequence[TopoDS_Edge],
-    profile: Directrix,
-    samples: Samples,
-    name: str,
-    *,
-    tolerance: float,
-    is_first: bool,
+    opening: Opening, i: int, profile: Directrix, samples: Samples, *, tolerance: float
 ) -> Band | None:
     """Returns the band between one side of an opening and a profile, None if they coincide.
 
+    It lies between its rails as the wrinkle does between P and Q, so that all strips of one opening
+    face the same way.
+
     Args:
-        edges: the side, in order.
-        profile: the wrinkle's rail.
+        opening: what was carved.
+        i: 0 for the side along P, 1 for that along Q.
+        profile: the wrinkle's rail along that side.
         samples: of the profile.
-        name: ``P`` or ``Q``.
         tolerance: mm; chords of the side.
-        is_first: whether the side is the band's P rail (it is along P, so that all strips of one
-            opening face the same way).
 
     Raises:
         InputError: the band has no width somewhere between its ends, or folds over.
     """
-    side = side_curve(edges, f"opening along {name}")
+    name = "PQ"[i]
+    side = side_curve(opening.q_edges if i else opening.p_edges, f"opening along {name}")
     gaps = _distances(samples.points, side)
     width = float(gaps.max())
-    if width <= settings.COINCIDENT:
+    if width <= settings.SEWN_DIRECTLY:
         return None
     _check_open(gaps, samples, name)
     side_samples = sample_directrix(side, tolerance)
-    rails = (side, profile) if is_first else (profile, side)
-    sampled = (side_samples, samples) if is_first else (samples, side_samples)
+    rails = (profile, side) if i else (side, profile)
+    sampled = (samples, side_samples) if i else (side_samples, samples)
     triangulation = _triangulated(*sampled, settings.planarity_from(tolerance))
-    _check_folds(triangulation, name, width)
+    _check_folds(triangulation, opening, i, width)
     shell = build_shell(triangulation, *rails, *sampled, settings.SURFACE)
     return Band(name, *rails, *sampled, triangulation, shell, width)
 
@@ -174,7 +171,14 @@ def _check_open(gaps: Floats, samples: Samples, name: str) -> None:
     )
 
 
-def _check_folds(triangulation: Triangulation, name: str, width: float) -> None:
+def _check_folds(triangulation: Triangulation, opening: Opening, i: int, width: float) -> None:
+    name, share = "PQ"[i], _overhang(triangulation, opening, i)
+    if share > settings.BAND_OVERHANG_LIMIT:
+        raise InputError(
+            f"band along {name} - up to {width:.3g} mm wide, {share:.0%} of it folds over: it faces"
+            f" into the upper - {settings.BAND_OVERHANG_LIMIT:.0%} is the limit - lower the waves,"
+            " take fewer of them or a wider margin"
+        )
     fold = np.abs(triangulation.fold)
     worst = float(fold.max(initial=0.0))
     if worst > settings.BAND_FOLD_LIMIT:
@@ -183,3 +187,16 @@ def _check_folds(triangulation: Triangulation, name: str, width: float) -> None:
             f" {np.degrees(worst):.0f} degrees - {np.degrees(settings.BAND_FOLD_LIMIT):.0f} is the"
             " limit - lower the waves, take fewer of them or a wider margin"
         )
+
+
+def _overhang(triangulation: Triangulation, opening: Opening, i: int) -> float:
+    """Returns the share of a band's area that faces against the upper's normal nearby."""
+    rail, first = opening.rails[i], opening.rails[0]
+    facing_of_strip = np.cross(first.tangents, opening.across[0]) * first.feet.normals
+    corners = np.vstack((triangulation.p, triangulation.q))[triangulation.triangles]
+    areas = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    middles = corners.mean(axis=1)
+    nearest = np.linalg.norm(middles[:, None] - rail.points[None], axis=2).argmin(axis=1)
+    facing = (areas * rail.feet.normals[nearest]).sum(axis=1) * np.sign(facing_of_strip.sum())
+    sizes = np.linalg.norm(areas, axis=1)
+    return float(sizes[facing < 0.0].sum() / sizes.sum())

@@ -18,25 +18,30 @@ def face_areas(faces: Iterable[TopoDS_Face], relative_error: float) -> list[floa
     """Returns the area in mm^2 of each face.
 
     The kernel's own error estimate is none, so each face is integrated at rising orders until two
-    agree to ``relative_error``.
+    agree to ``relative_error`` of the face or of the mean face, whichever is larger.
 
     Raises:
         CadError: they do not agree at the highest order either.
     """
     with kernel.kernel_step("measure an area"):
-        return [_face_area(face, relative_error) for face in faces]
+        given = list(faces)
+        first = [_integrated(face, settings.AREA_BALANCE_ORDERS[0]) for face in given]
+        mean = sum(first) / max(len(first), 1)
+        return [
+            _settled(face, area, relative_error * max(area, mean))
+            for face, area in zip(given, first, strict=True)
+        ]
 
 
-def _face_area(face: TopoDS_Face, relative_error: float) -> float:
-    before = _integrated(face, settings.AREA_BALANCE_ORDERS[0])
+def _settled(face: TopoDS_Face, before: float, limit: float) -> float:
     for order in settings.AREA_BALANCE_ORDERS[1:]:
         area = _integrated(face, order)
-        if abs(area - before) <= relative_error * abs(area):
+        if abs(area - before) <= limit:
             return area
         before = area
     raise CadError(
         "measure an area",
-        f"integrations of a face of {before:.6g} mm^2 do not settle - {relative_error:.0e} of it is"
+        f"integrations of a face of {before:.6g} mm^2 do not settle - {limit:.1e} mm^2 is"
         " the limit - simplify the face",
     )
 

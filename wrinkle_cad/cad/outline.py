@@ -107,13 +107,18 @@ def across_rail(rail: Rail, other: Rail, names: tuple[str, str]) -> Floats:
     )
     if against.any():
         at = int(np.argmin(offset * sign))
-        crossings = int(np.abs(np.diff(against.astype(np.int64))).sum())
+        crossings = _sign_changes(offset, settings.WIDTH_PER_LENGTH_MIN * rail.length)
         raise InputError(
-            f"rails {names[0]} and {names[1]} - they cross {crossings} times, by"
+            f"rails {names[0]} and {names[1]} - they cross {crossings} times, by up to"
             f" {abs(offset[at]):.3g} mm at {rail.shares[at] * rail.length:.4g} mm along"
             f" {names[0]} - 0 mm is the limit - keep one on one side of the other"
         )
     return np.asarray(lateral * sign, dtype=np.float64)
+
+
+def _sign_changes(offset: Floats, nothing: float) -> int:
+    signs = np.sign(offset[np.abs(offset) > nothing])
+    return int((signs[1:] != signs[:-1]).sum())
 
 
 def faded_margin(shares: Floats, margin: float, fade: float) -> Floats:

@@ -93,7 +93,7 @@ def stitch(
 
     Args:
         openings: one, or several in order.
-        strips: one per opening; P and Q as they were given to ``carve`` (run either way).
+        strips: one per opening, between its profiles, which run as its rails do.
         tolerance: mm; chords of the bands along the openings.
 
     Raises:
@@ -137,17 +137,18 @@ def _all_faces(
             (name, kernel.faces_of(strip.topods_shell()))
         ]
         ends = []
-        for rail, edges, profile, samples in (
-            ("P", opening.p_edges, strip.p, strip.p_samples),
-            ("Q", opening.q_edges, strip.q, strip.q_samples),
-        ):
-            ends.append(_side_ends(edges, profile, rail))
-            band = make_band(
-                edges, profile, samples, rail, tolerance=tolerance, is_first=rail == "P"
+        for i, (edges, profile, samples) in enumerate(
+            (
+                (opening.p_edges, strip.p, strip.p_samples),
+                (opening.q_edges, strip.q, strip.q_samples),
             )
+        ):
+            ends.append(_side_ends(edges, profile, "PQ"[i]))
+            band = make_band(opening, i, profile, samples, tolerance=tolerance)
             if band is not None:
-                bands.append(replace(band, name=f"{name} band {rail}"))
-                pieces.append((f"{name} band {rail}", kernel.faces_of(band.shell)))
+                part = f"{name} band {band.name}"
+                bands.append(replace(band, name=part))
+                pieces.append((part, kernel.faces_of(band.shell)))
         for at, edges in ((0, opening.start_edges), (1, opening.end_edges)):
             bridge = np.array([strip.p_samples.points[-at], strip.q_samples.points[-at]])
             corners = np.array([ends[0][at], ends[1][at]])
