@@ -133,7 +133,7 @@ def test_lengths_and_areas_are_those_of_the_closed_forms() -> None:
 
 def test_an_area_that_misses_its_bound_is_an_error() -> None:
     wavy = kernel.faces_of(BRepPrimAPI_MakeSphere(1.0).Shape())[0]
-    with pytest.raises(CadError, match="relative error"):
+    with pytest.raises(CadError, match="two integrations of a face differ by"):
         kernel.area_of(wavy, relative_error=1e-30)
 
 

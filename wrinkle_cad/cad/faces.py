@@ -113,7 +113,8 @@ def _faces_of(fan: Fan, skeleton: Skeleton) -> list[TopoDS_Shape]:
         loop: Border = (*bank, *to_apex, *from_apex)
         return [plane_face(loop if fan.side == P_STEP else flipped(loop))]
     sectors = cut_at_knots((edge, to_apex, from_apex), apex, vertex, skeleton.limit)
-    faces = [cone_face(*sector, apex, vertex) for sector in sectors]
+    knots = skeleton.parameters(fan)
+    faces = [cone_face(*sector, apex, vertex, knots) for sector in sectors]
     return [face if fan.side == P_STEP else face.Reversed() for face in faces]
 
 

@@ -46,10 +46,15 @@ def plane_face(loop: Border) -> TopoDS_Face:
 def loop_normal(poles: Floats) -> Floats:
     """Returns (3,) mm^2: twice the area vector of the closed polygon through (k, 3) mm."""
     here, there = poles[1:-1] - poles[0], poles[2:] - poles[0]
-    # Written out: np.cross spends 50 microseconds on asking which axis is meant.
-    return np.array(
-        [here[:, i] @ there[:, j] - here[:, j] @ there[:, i] for i, j in ((1, 2), (2, 0), (0, 1))]
-    )
+    normal: Floats = cross_rows(here, there).sum(axis=0)
+    return normal
+
+
+def cross_rows(first: Floats, second: Floats) -> Floats:
+    """Returns (k, 3): the cross products of (k, 3) rows, without np.cross's 50 microseconds."""
+    x, y, z = first.T
+    a, b, c = second.T
+    return np.stack((y * c - z * b, z * a - x * c, x * b - y * a), axis=1)
 
 
 def is_plane_sector(curve: PoleCurve, apex: Floats) -> bool:

@@ -62,6 +62,10 @@ class Skeleton:
             self._vertices[corner] = make_vertex(self.points[corner])
         return self._vertices[corner]
 
+    def parameters(self, fan: Fan) -> Floats:
+        """Returns (k,): parameters of the rail at the samples along a fan's bank."""
+        return self._parameters[fan.side][fan.start : fan.end + 1]
+
     def bank(self, fan: Fan) -> Border:
         """Returns the border of a fan on its rail, along the rail."""
         if fan not in self._banks:
