@@ -121,8 +121,7 @@ def _convert(given: argparse.Namespace, planned: tuple[PlannedJob, ...], folder:
         return INTERRUPTED
     _show_summary(given, summary)
     is_bad = summary.failed or summary.left
-    is_missed = summary.missed_limits and getattr(given, "strict", False)
-    return FAILED if is_bad or is_missed else DONE
+    return FAILED if is_bad or summary.strict_misses else DONE
 
 
 @contextmanager

@@ -51,6 +51,14 @@ _VECTORS: Final = {
 }
 _ONE_FOR_ALL: Final = ("waves", "height", "phase_deg", "seam_allowance", "lasting_margin")
 """Of these one number stands for all of its parts."""
+_KINDS: Final[dict[str, tuple[type, ...]]] = {
+    "str": (str,),
+    "bool": (bool,),
+    "int": (int,),
+    "float": (float, int),
+    "Path": (Path, str),
+    "tuple[str, ...]": (tuple, list),
+}
 _NAME_LIMIT: Final = 200
 _EPOCH_LIMIT: Final = 253_402_300_800
 """The year 10000, which no date format of the outputs can hold."""
@@ -163,6 +171,7 @@ class Job:
         Raises:
             JobError: a setting is out of its range; the message names it.
         """
+        self._check_types()
         for field in _PATH_FIELDS:
             if getattr(self, field, None) is not None:
                 object.__setattr__(self, field, Path(getattr(self, field)))
@@ -186,6 +195,17 @@ class Job:
         epoch = self.source_date_epoch
         if epoch is not None and not 0 <= epoch < _EPOCH_LIMIT:
             raise JobError(f"source_date_epoch - {epoch} s - 0 to {_EPOCH_LIMIT - 1} - correct it")
+
+    def _check_types(self) -> None:
+        for field in fields(self):
+            kinds = _KINDS.get(str(field.type).removesuffix(" | None"))
+            value = getattr(self, field.name)
+            if kinds is None or (value is None and str(field.type).endswith("None")):
+                continue
+            if not isinstance(value, kinds) or (isinstance(value, bool) and bool not in kinds):
+                raise JobError(f"{field.name} - {value!r} - {kinds[0].__name__} - correct it")
+        if not all(isinstance(name, str) for name in self.criteria):
+            raise JobError(f"criteria - {self.criteria!r} - names of criteria - correct it")
 
 
 def make_job(

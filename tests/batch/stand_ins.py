@@ -12,6 +12,7 @@ import os
 import signal
 import sys
 import time
+from dataclasses import replace
 from pathlib import Path
 
 from wrinkle_cad.errors import CadError, ExportError
@@ -69,6 +70,13 @@ def worker_id_job(job: Job, *, progress: Progress | None = None) -> JobDone | Jo
     threads = {name: os.environ.get(name) for name in ("NUMBA_NUM_THREADS", "OMP_NUM_THREADS")}
     path.write_text(json.dumps({"pid": os.getpid(), "threads": threads}))
     return JobDone(job=job, outputs=(path,), summary={}, seconds={})
+
+
+def limits_missed_job(job: Job, *, progress: Progress | None = None) -> JobDone | JobFailed:
+    """Is done and misses a limit."""
+    outcome = job_by_content(job, progress=progress)
+    assert isinstance(outcome, JobDone)
+    return replace(outcome, missed_limits=("fold - 9 deg - 8 deg",))
 
 
 def _write(job: Job, kind: str) -> Path:

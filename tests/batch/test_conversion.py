@@ -12,7 +12,7 @@ from pathlib import Path
 import pytest
 
 from tests.batch.conftest import Bench
-from tests.batch.stand_ins import KINDS
+from tests.batch.stand_ins import KINDS, limits_missed_job
 from wrinkle_cad.batch import delivery, staging
 from wrinkle_cad.batch.events import BatchSummary, FileFinished, FileSkipped
 from wrinkle_cad.batch.lock import locked_folder
@@ -126,6 +126,29 @@ def test_output_folders_mirror_input_folders(bench: Bench) -> None:
     bench.put(**{"x/y/a": "1", "b": "2"})
     bench.run()
     assert {"x/y/a.step", "b.step"} <= set(bench.files())
+
+
+@pytest.mark.parametrize("name", ["material", "profile"])
+def test_a_setting_that_is_a_file_counts_by_its_content(bench: Bench, name: str) -> None:
+    bench.put(a="1")
+    path = bench.inputs.parent / "settings.toml"
+    path.write_text("a = 1")
+    keywords = {name: str(path)}
+    assert counts(bench.run(keywords=keywords)) == (1, 0, 0)
+    assert counts(bench.run(keywords=keywords)) == (0, 0, 1)
+    path.write_text("a = 2")
+    assert counts(bench.run(keywords=keywords)) == (1, 0, 0)
+    path.unlink()
+    assert counts(bench.run(keywords=keywords)) == (0, 1, 0)
+    (event,) = [event for event in bench.events if isinstance(event, FileFinished)]
+    assert "settings.toml - No such file" in event.record.message
+
+
+def test_limits_missed_fail_the_batch_only_where_that_is_asked_for(bench: Bench) -> None:
+    bench.put(a="1", b="2")
+    (bench.inputs / "b.job.toml").write_text("strict = true")
+    summary = bench.run(job_function=limits_missed_job)
+    assert (summary.done, summary.missed_limits, summary.strict_misses) == (2, 2, 1)
 
 
 def test_a_folder_in_use_is_refused(bench: Bench) -> None:

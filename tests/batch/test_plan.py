@@ -80,6 +80,29 @@ def test_broken_settings_cost_the_files_they_are_for(tmp_path: Path) -> None:
     assert "tolerance" in planned["x/b.step"].refusal
 
 
+@pytest.mark.parametrize(
+    "line",
+    [
+        "criteria = 5",
+        "criteria = [1]",
+        'criteria = "invalid"',
+        'source_date_epoch = "now"',
+        "p = 1",
+        'rulings = "yes"',
+        "tolerance = true",
+        "tolerance = {a = 1}",
+        "search = 1979-05-27",
+        'novelty = "x"',
+        "tolerance =",
+    ],
+)
+def test_settings_of_the_wrong_type_cost_the_files_they_are_for(tmp_path: Path, line: str) -> None:
+    put(tmp_path, a="", x__b="", x__job_toml=line)
+    planned = plan(tmp_path)
+    assert planned["a.step"].refusal == ""
+    assert planned["x/b.step"].refusal
+
+
 def test_of_two_files_with_the_same_outputs_the_second_is_refused(tmp_path: Path) -> None:
     put(tmp_path, a="", A="")
     (tmp_path / "in/a.stp").write_text("")

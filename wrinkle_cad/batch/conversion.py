@@ -30,6 +30,7 @@ from .index_page import write_index_page
 from .journal import Journal
 from .lock import locked_folder
 from .manifest import Manifest, Record, record_from_line
+from .names import printable
 from .plan import PlannedJob
 from .staging import discard_staging, leftovers, move_into_place, open_staging
 from .summary import write_summary_table
@@ -140,7 +141,7 @@ class _Conversion:
         self._journal = Journal(folder)
         self._manifest = Manifest(folder)
         self._under_way: dict[int, tuple[Path, Record]] = {}
-        self._counts = {"done": 0, "failed": 0, "skipped": 0, "missed": 0}
+        self._counts = {"done": 0, "failed": 0, "skipped": 0, "missed": 0, "strict": 0}
         self._records: dict[int, Record] = {}
         self._stopped_by = ""
 
@@ -200,7 +201,8 @@ class _Conversion:
                 return None
             content = entry.source.path.read_bytes() if self._options.ship_bytes else None
         except OSError as error:
-            message = f"{entry.source.label} - {error.strerror} - a file that can be read - correct"
+            culprit = printable(Path(error.filename or entry.source.path).name)
+            message = f"read {culprit} - {error.strerror} - a file that can be read - correct it"
             self._refuse(key, "read", type(error).__name__, message)
             return None
         try:
@@ -269,17 +271,22 @@ class _Conversion:
     def _skip(self, key: int, record: Record) -> None:
         self._records[key] = record
         self._counts["skipped"] += 1
-        self._counts["missed"] += bool(record.missed_limits)
+        self._count_missed(key, record)
         self._tell(FileSkipped(record.input, record))
 
     def _count(self, key: int, record: Record, trace: str) -> None:
         self._records[key] = record
         self._counts["done" if record.is_done else "failed"] += 1
-        self._counts["missed"] += bool(record.missed_limits)
+        self._count_missed(key, record)
         message = f" in phase {record.phase}: {record.message}" if record.message else ""
         self._journal.write(f"{record.input}: {record.outcome}{message}")
         self._journal.write_detail(trace)
         self._tell(FileFinished(record.input, record))
+
+    def _count_missed(self, key: int, record: Record) -> None:
+        is_missed = bool(record.missed_limits)
+        self._counts["missed"] += is_missed
+        self._counts["strict"] += is_missed and self._planned[key].job.strict
 
     def _clear_leftovers(self) -> None:
         """Finishes what a killed batch had committed and removes what it had not."""
@@ -304,6 +311,7 @@ class _Conversion:
             skipped=counts["skipped"],
             left=len(self._planned) - settled,
             missed_limits=counts["missed"],
+            strict_misses=counts["strict"],
             seconds=seconds,
             stopped_by=self._stopped_by,
         )

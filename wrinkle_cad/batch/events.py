@@ -71,6 +71,8 @@ class BatchSummary:
     """Files not come to, because the disk was full."""
     missed_limits: int
     """Files done, now or before, that miss a limit that was given."""
+    strict_misses: int = 0
+    """Those of them whose settings say that this is a failure."""
     seconds: float
     """Wall-clock seconds."""
     stopped_by: str = ""

@@ -50,4 +50,5 @@ def hash_settings(job: Job, versions: Mapping[str, str]) -> str:
 
 
 def _plain(value: Any) -> Any:
-    return {"file": hash_file(value)} if isinstance(value, Path) else value
+    is_file = isinstance(value, Path) or (isinstance(value, str) and value.endswith(".toml"))
+    return {"file": hash_file(Path(value))} if is_file else value
