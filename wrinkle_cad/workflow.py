@@ -163,8 +163,9 @@ def _write(job: Job, made: Made, summary: dict[str, Any], clock: PhaseClock) -> 
             summary["findings"] += write_flat(job, made, paths)
             hashed = {kind: paths[kind] for kind in kinds if kind not in _NOT_HASHED}
             summary["outputs"] = hashes_of(hashed)
+        # The page shows what the JSON holds, so its own seconds are in neither.
+        summary["seconds"] = {phase: round(took, 3) for phase, took in clock.seconds.items()}
         with clock.phase("page"):
             paths["html"].write_text(page_of(made, summary), encoding="utf-8")
-        summary["seconds"] = {phase: round(took, 3) for phase, took in clock.seconds.items()}
         paths["json"].write_text(to_json(summary), encoding="utf-8")
     return tuple(output_paths(job, kinds).values())

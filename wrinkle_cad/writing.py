@@ -72,7 +72,7 @@ def page_of(made: Made, summary: Mapping[str, Any]) -> str:
             triangulation=strip.triangulation,
             unrolling=strip.unrolling,
             pieces=made.pattern.pieces_of(index),
-            valid=strip.valid,
+            valid=strip.valid if _is_drawable(strip) else None,
             local=strip.local,
             least_bending=strip.least_bending,
             gaps=strip.report.gaps,
@@ -81,6 +81,11 @@ def page_of(made: Made, summary: Mapping[str, Any]) -> str:
         for index, strip in enumerate(made.strips)
     ]
     return write_page(summary, views, _body_view(made))
+
+
+def _is_drawable(strip: TriangulatedStrip) -> bool:
+    m, n = len(strip.triangulation.p), len(strip.triangulation.q)
+    return m * n <= settings.MATRIX_BRIDGES
 
 
 def timestamp_of(job: Job) -> datetime.datetime:
