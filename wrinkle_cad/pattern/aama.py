@@ -185,7 +185,8 @@ def _write_contour(
     for point, is_corner in zip(points, corners, strict=True):
         layer = TURN_POINTS if is_corner else CURVE_POINTS
         block.add_point(rounded(point), dxfattribs={"layer": layer})
-    dense = _densified(points, is_closed=is_closed)
+    # The copy of a straight line has nothing to validate in between.
+    dense = _densified(points, is_closed=is_closed) if len(points) > 2 else points
     given = {"layer": VALIDATION[style.layer]}
     block.add_polyline2d(list(map(rounded, dense)), close=is_closed, dxfattribs=given)
 

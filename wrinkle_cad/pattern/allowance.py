@@ -161,7 +161,9 @@ def _nearest_sides(cut: Floats, sew: Outline, widths: Floats) -> Ints:
     for side in np.unique(sew.sides):
         index = np.flatnonzero(sew.sides == side)
         segments = shapely.linestrings(np.stack((closed[index], closed[index + 1]), axis=1))
-        line = shapely.MultiLineString(list(segments))
-        misses[side] = shapely.distance(middles, line) - widths[side]
+        _, distance = shapely.STRtree(segments).query_nearest(
+            middles, return_distance=True, all_matches=False
+        )
+        misses[side] = distance - widths[side]
     nearest: Ints = np.argmin(misses, axis=0).astype(np.int8)
     return nearest
