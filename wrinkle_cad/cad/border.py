@@ -12,7 +12,7 @@ from OCP.TopAbs import TopAbs_REVERSED
 from OCP.TopoDS import TopoDS_Edge, TopoDS_Face, TopoDS_Shape, TopoDS_Shell
 
 from . import kernel
-from .splitting import ShapeIndex
+from .shape_index import ShapeIndex
 
 Floats = NDArray[np.float64]
 

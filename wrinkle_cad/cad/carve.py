@@ -28,8 +28,9 @@ from .outline import (
 )
 from .projection import UpperFaces
 from .sewing import joined
+from .shape_index import ShapeIndex
 from .smooth import smooth_edge
-from .splitting import ShapeIndex, Split, split_faces
+from .splitting import Split, split_faces
 
 Floats = NDArray[np.float64]
 STEP = "carve the upper"

@@ -13,7 +13,7 @@ from wrinkle_cad.errors import CadError
 
 from . import kernel
 from .border import edge_middle
-from .splitting import ShapeIndex
+from .shape_index import ShapeIndex
 
 STEP = "compare the border with the upper's"
 

@@ -10,7 +10,7 @@ from OCP.TopoDS import TopoDS_Face, TopoDS_Shape
 from . import kernel
 from .border import joined_faces
 from .guests import to_build123d
-from .splitting import ShapeIndex
+from .shape_index import ShapeIndex
 
 
 def alike(shape: TopoDS_Shape, source: object, label: str = "") -> Any:

@@ -9,7 +9,8 @@ import numpy as np
 from OCP.TopoDS import TopoDS_Edge, TopoDS_Face
 
 from . import kernel
-from .splitting import ShapeIndex, edge_frame, oriented_edges
+from .shape_index import ShapeIndex
+from .splitting import edge_frame, oriented_edges
 
 
 @dataclass(frozen=True, slots=True)

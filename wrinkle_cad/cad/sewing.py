@@ -16,7 +16,8 @@ from wrinkle_cad.errors import CadError
 
 from . import kernel
 from .borders import sub_curve
-from .splitting import ShapeIndex, oriented_edges
+from .shape_index import ShapeIndex
+from .splitting import oriented_edges
 
 STEP = "sew the wrinkle to the body"
 

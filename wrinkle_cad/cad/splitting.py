@@ -8,7 +8,7 @@ piece.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -29,34 +29,15 @@ from wrinkle_cad.errors import CadError
 
 from . import kernel
 from .outline import Side, unit
+from .shape_index import ShapeIndex
 from .splines import make_surface
 
 try:  # OCP 7.9
-    from OCP.TopTools import TopTools_IndexedMapOfShape, TopTools_ListOfShape
+    from OCP.TopTools import TopTools_ListOfShape
 except ImportError:  # OCP 8.0 keeps every collection in one module
-    from OCP.collections import (
-        IndexedMap_TopoDS_Shape_TopTools_ShapeMapHasher as TopTools_IndexedMapOfShape,
-    )
     from OCP.collections import List_TopoDS_Shape as TopTools_ListOfShape
 
 Floats = NDArray[np.float64]
-
-
-class ShapeIndex:
-    """Shapes numbered from 0; a shape and its reverse are the same."""
-
-    def __init__(self, shapes: Iterable[TopoDS_Shape] = ()) -> None:
-        self._map = TopTools_IndexedMapOfShape()
-        for shape in shapes:
-            self.add(shape)
-
-    def add(self, shape: TopoDS_Shape) -> int:
-        """Returns the number of a shape, a new one if it has none yet."""
-        return int(self._map.Add(shape)) - 1
-
-    def find(self, shape: TopoDS_Shape) -> int:
-        """Returns the number of a shape, -1 if it has none."""
-        return int(self._map.FindIndex(shape)) - 1
 
 
 STEP = "split the upper"
