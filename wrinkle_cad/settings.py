@@ -104,7 +104,7 @@ LENGTH_ERROR: Final = 1e-9
 AREA_RELATIVE_ERROR: Final = 1e-8
 """How exactly the CAD kernel integrates the area of a face; its own default is some 1e-5."""
 
-AREA_ORDERS: Final = (1e-6, 1e-9, 1e-12, 1e-14, 1e-16, 1e-20)
+AREA_ORDERS: Final = (1e-6, 1e-9, 1e-12, 1e-14, 1e-16, 1e-20, 1e-30)
 """Error bounds that make the CAD kernel choose ever higher orders of integration."""
 
 PATTERN_CORNER: Final = 0.5

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import subprocess
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -136,3 +137,27 @@ def points_on_edge(edge: TopoDS_Edge, count: int = 9) -> tuple[Floats, Floats]:
     parameters = np.linspace(curve.FirstParameter(), curve.LastParameter(), count)
     points = [curve.Value(float(u)) for u in parameters]
     return parameters, np.array([(at.X(), at.Y(), at.Z()) for at in points])
+
+
+def freecad_judgement(
+    program: str, paths: list[Path], folder: Path
+) -> list[tuple[int, int, bool, float]]:
+    """Shells, faces, validity and length of the border of each STEP file, as FreeCAD sees them."""
+    script = folder / "judge.py"
+    script.write_text(
+        "import Part\n"
+        f"for path in {[str(path) for path in paths]!r}:\n"
+        "    shape = Part.read(path)\n"
+        "    uses = {}\n"
+        "    for face in shape.Faces:\n"
+        "        for edge in face.Edges:\n"
+        "            if not edge.Degenerated:\n"
+        "                uses.setdefault(edge.hashCode(), []).append(edge.Length)\n"
+        "    border = sum(edge[0] for edge in uses.values() if len(edge) == 1)\n"
+        "    print('SEEN', len(shape.Shells), len(shape.Faces), int(shape.isValid()), border)\n"
+    )
+    done = subprocess.run(
+        [program, str(script)], capture_output=True, text=True, timeout=300, check=True
+    )
+    rows = [row.split()[1:] for row in done.stdout.splitlines() if row.startswith("SEEN")]
+    return [(int(row[0]), int(row[1]), row[2] == "1", float(row[3])) for row in rows]
