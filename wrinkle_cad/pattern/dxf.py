@@ -17,6 +17,7 @@ from pathlib import Path
 from typing import Final, Literal, get_args
 
 from ezdxf.addons import gerber_D6673, r12export
+from ezdxf.document import Drawing
 
 from wrinkle_cad import settings
 from wrinkle_cad.atomic import write_atomically
@@ -74,34 +75,36 @@ def dxf_file(
     chosen = profile if isinstance(profile, Profile) else profile_from(profile)
     _check_options(pieces, chosen, version, curves)
     moment = timestamp or EPOCH
-    findings: tuple[Finding, ...]
-    if chosen.is_blocks:
-        release = version or "R12"
-        everything = [*pieces, scale_piece(pieces[0])] if test_square else pieces
-        with _without_unit_warning():
+    release = version or ("R12" if chosen.is_blocks else settings.DXF_VERSION)
+    stream = io.StringIO()
+    with _without_unit_warning():
+        if chosen.is_blocks:
+            everything = [*pieces, scale_piece(pieces[0])] if test_square else pieces
             document, findings = block_document(
                 laid_out(everything), chosen, release=release, timestamp=moment
             )
-        if release != "R12":
-            findings = (*findings, _layout_blocks_finding(chosen.name, release))
-    else:
-        release = version or settings.DXF_VERSION
-        document, findings = cutter_document(
-            laid_out(pieces),
-            chosen,
-            release="R2000" if release == "R12" else release,
-            curves=curves,
-            test_square=test_square,
-        )
-    stream = io.StringIO()
-    with _without_unit_warning():
-        if release != "R12":
-            document.write(stream)
-        elif chosen.is_blocks:
-            gerber_D6673.export_stream(document, stream)
+            if release != "R12":
+                findings = (*findings, _layout_blocks_finding(chosen.name, release))
         else:
-            r12export.write(document, stream)
+            document, findings = cutter_document(
+                laid_out(pieces),
+                chosen,
+                release="R2000" if release == "R12" else release,
+                curves=curves,
+                test_square=test_square,
+            )
+        _export(document, stream, is_r12=release == "R12", is_blocks=chosen.is_blocks)
     return DxfFile(stamped(stream.getvalue(), moment).encode("ascii"), findings)
+
+
+def _export(document: Drawing, stream: io.StringIO, *, is_r12: bool, is_blocks: bool) -> None:
+    """Writes a document, R12 in the plainest form that its readers know."""
+    if not is_r12:
+        document.write(stream)
+    elif is_blocks:
+        gerber_D6673.export_stream(document, stream)
+    else:
+        r12export.write(document, stream)
 
 
 def dxf_bytes(

@@ -135,18 +135,15 @@ def _tiling(drawings: Sequence[Drawing]) -> _Tiling:
     """Returns the tiling with the fewest pages, upright if both ways need as many."""
     points = np.vstack([stroke.points for drawing in drawings for stroke in drawing.strokes])
     low, high = points.min(axis=0) - 1.0, points.max(axis=0) + 1.0
-    best: _Tiling | None = None
+    tilings = []
     for page in ((_SHORT, _LONG), (_LONG, _SHORT)):
-        trial = _Tiling(np.array(page), low, 1, 1)
+        step = _Tiling(np.array(page), low, 1, 1).step
         columns, rows = (
-            max(1, math.ceil((size - _OVERLAP) / step))
-            for size, step in zip(high - low, trial.step, strict=True)
+            max(1, math.ceil((size - _OVERLAP) / way))
+            for size, way in zip(high - low, step, strict=True)
         )
-        if best is None or columns * rows < best.columns * best.rows:
-            best = _Tiling(np.array(page), low, columns, rows)
-    if best is None:
-        raise AssertionError
-    return best
+        tilings.append(_Tiling(np.array(page), low, columns, rows))
+    return min(tilings, key=lambda tiling: tiling.columns * tiling.rows)
 
 
 def _inked_pages(drawings: Sequence[Drawing], tiling: _Tiling) -> list[tuple[int, int]]:

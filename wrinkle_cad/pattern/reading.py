@@ -123,13 +123,11 @@ def read_dxf(path: Path) -> DxfContent:
     for space, entities in _spaces(document, blocks, is_blocks=is_blocks):
         for entity in entities:
             _collect(entity, space, lines, marks)
-    known = document.dxfversion >= ezdxf.const.DXF2000
-    unit = int(document.header.get("$INSUNITS", 0)) if known else None
-    metric = bool(document.header.get("$MEASUREMENT", 0)) if known else None
+    unit, is_metric = _units(document)
     return DxfContent(
         release=document.acad_release,
         unit=unit,
-        is_metric=metric,
+        is_metric=is_metric,
         layers=tuple(layer.dxf.name for layer in document.layers),
         blocks=blocks,
         lines=tuple(lines),
@@ -141,6 +139,14 @@ def read_dxf(path: Path) -> DxfContent:
             *(error.message for error in (*auditor.errors, *auditor.fixes)),
         ),
     )
+
+
+def _units(document: DxfDocument) -> tuple[int | None, bool | None]:
+    """Returns ``$INSUNITS`` and whether ``$MEASUREMENT`` is metric; R12 has neither."""
+    if document.dxfversion < ezdxf.const.DXF2000:
+        return None, None
+    header = document.header
+    return int(header.get("$INSUNITS", 0)), bool(header.get("$MEASUREMENT", 0))
 
 
 def _check_sections(path: Path) -> bool:
@@ -172,7 +178,7 @@ def _spaces(
     if not is_blocks:
         yield ENTITIES, disassemble.recursive_decompose(document.modelspace())
         return
-    yield ENTITIES, (e for e in document.modelspace() if e.dxftype() != "INSERT")
+    yield ENTITIES, document.modelspace().query("* !INSERT")
     for name in blocks:
         yield name, document.blocks.get(name)
 
