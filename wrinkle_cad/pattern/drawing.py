@@ -101,28 +101,25 @@ def notch_lines(notch: Notch) -> tuple[Floats, ...]:
 
 
 def _labels(piece: PatternPiece) -> tuple[Label, ...]:
-    """Returns the texts, centred on a roomy spot and as large as fits there, within limits."""
+    """Returns the texts on a roomy spot, as large as fits inside the sew line, within limits."""
     region = shapely.Polygon(piece.sew_line)
     circle = shapely.maximum_inscribed_circle(region, piece.tolerance)
-    middle, radius = circle.coords[0], circle.length
-    centre = region.centroid
-    if region.contains(centre) and region.exterior.distance(centre) > 0.8 * radius:
-        middle = centre.coords[0]
+    spots = (np.array(circle.coords[0]), piece.grain_line.mean(axis=0))
     lines = piece.texts
-    longest = max(map(len, lines))
-    room = min(2.0 * radius / (1.5 * len(lines)), _chord(region, middle) / longest)
-    height = float(np.clip(room, settings.TEXT_HEIGHT_MIN, settings.TEXT_HEIGHT))
-    top = np.array(middle) + np.array((-0.45 * height * longest, 0.75 * height * len(lines)))
+    size = np.array((0.9 * max(map(len, lines)), 1.5 * len(lines)))
+    shapely.prepare(region)
+    middle, height = spots[0], settings.TEXT_HEIGHT_MIN
+    for trial in np.geomspace(settings.TEXT_HEIGHT, settings.TEXT_HEIGHT_MIN, 12):
+        boxes = [
+            shapely.box(*(spot - 0.5 * trial * size), *(spot + 0.5 * trial * size))
+            for spot in spots
+        ]
+        fits = np.flatnonzero(shapely.contains(region, boxes))
+        if len(fits):
+            middle, height = spots[fits[0]], float(trial)
+            break
+    left, top = middle + 0.5 * height * size * (-1.0, 1.0)
     return tuple(
-        Label("text", text, frozen(top - np.array((0.0, (1.5 * row + 1.0) * height))), height)
+        Label("text", text, frozen((left, top - (1.5 * row + 1.2) * height)), height)
         for row, text in enumerate(lines)
     )
-
-
-def _chord(region: shapely.Polygon, middle: tuple[float, float]) -> float:
-    """Returns the length in mm of the level line through a point, as far as it stays inside."""
-    low, _, high, _ = region.bounds
-    level = shapely.LineString(((low - 1.0, middle[1]), (high + 1.0, middle[1])))
-    parts = shapely.get_parts(shapely.intersection(region, level))
-    nearest = min(parts, key=lambda part: part.distance(shapely.Point(middle)))
-    return float(nearest.length)
