@@ -87,6 +87,8 @@ SURFACES: Final = ("cones", "facets")
 SURFACE: Final = "cones"
 STRIP_COLOR: Final = (0.80, 0.52, 0.25)
 """Leather: red, green, blue from 0 to 1."""
+BAND_COLOR: Final = (0.88, 0.68, 0.45)
+"""Of what joins the wrinkle to the upper: lighter leather."""
 UPPER_COLOR: Final = (0.72, 0.72, 0.70)
 """Light grey, so that the wrinkle stands out."""
 VIEW_SAG: Final = 0.1

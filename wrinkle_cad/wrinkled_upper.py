@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from .cad.choose import Chosen, StripInput
     from .cad.opening import Opening
     from .cad.profiles import Direction
+    from .cad.shapes import NamedShape
     from .cad.stitch import Stitched
 
 
@@ -24,6 +25,8 @@ if TYPE_CHECKING:
 class WrinkledUpper:
     """An upper with its wrinkles stitched in."""
 
+    given: NamedShape
+    """The upper as the file has it."""
     openings: tuple[Opening, ...]
     """What was carved, in the order of the strips."""
     strips: tuple[WrinkleStrip, ...]
@@ -100,7 +103,8 @@ def wrinkle_upper(job: Job, chosen: Chosen) -> WrinkledUpper:
         strips.append(strip_of(job, p, q, given.name))
         body = opening.body_shape
     stitched = stitch(openings, strips, tolerance=job.tolerance)
-    return WrinkledUpper(tuple(openings), tuple(strips), _bands(job, stitched), stitched)
+    bands = _bands(job, stitched)
+    return WrinkledUpper(chosen.upper, tuple(openings), tuple(strips), bands, stitched)
 
 
 def _carved(job: Job, body: object, given: StripInput) -> Opening:
@@ -145,6 +149,7 @@ def _bands(job: Job, stitched: Stitched) -> tuple[TriangulatedStrip, ...]:
             tolerance=job.tolerance,
             name=band.name,
             role="band",
+            color=settings.BAND_COLOR,
         )
         for band in stitched.report.bands
     )

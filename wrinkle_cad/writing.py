@@ -98,9 +98,12 @@ def timestamp_of(job: Job) -> datetime.datetime:
 def _parts_of(made: Made) -> Sequence[Part]:
     from .cad.shapes import Part
 
-    if made.upper is not None:
-        return [Part(made.upper.stitched.shell_shape, made.upper_name, settings.UPPER_COLOR)]
-    return [Part(strip.topods_shell(), strip.name, strip.color) for strip in made.strips]
+    if made.upper is None:
+        return [Part(strip.topods_shell(), strip.name, strip.color) for strip in made.strips]
+    from .cad.stitched_part import stitched_part
+
+    upper, colors = made.upper, {strip.name: strip.color for strip in made.strips}
+    return [stitched_part(upper.stitched, upper.openings, upper.given, made.upper_name, colors)]
 
 
 def _notch_parts(made: Made) -> Iterator[Part]:

@@ -10,11 +10,14 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Final
 
 from wrinkle_cad import settings
 from wrinkle_cad.errors import InputError
 
 from .shapes import RAILS, UPPER, CadFile, NamedShape, rail_role
+
+_PLURALS: Final = {"vertex": "vertices"}
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -262,7 +265,10 @@ def _summary(cad_file: CadFile) -> str:
     for shape in cad_file.shapes:
         if shape.is_free:
             counts[shape.kind] = counts.get(shape.kind, 0) + 1
-    words = (f"{count} {kind}{'s' if count > 1 else ''}" for kind, count in counts.items())
+    words = (
+        f"{count} {_PLURALS.get(kind, f'{kind}s') if count > 1 else kind}"
+        for kind, count in counts.items()
+    )
     return "only " + " and ".join(words)
 
 

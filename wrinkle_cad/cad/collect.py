@@ -24,8 +24,9 @@ from OCP.TopoDS import TopoDS_Iterator, TopoDS_Shape
 from wrinkle_cad import settings
 from wrinkle_cad.errors import CadError
 
+from .face_styles import carried_over, styles_in
 from .kernel import edges_of, kind_name, length_of, make_compound, vertices_of
-from .shapes import CURVE_KINDS, NamedShape
+from .shapes import CURVE_KINDS, FaceStyle, NamedShape
 from .sniff import Source
 
 Color = tuple[float, float, float]
@@ -40,10 +41,23 @@ class Found:
     name: str = ""
     color: Color | None = None
     is_free: bool = True
+    faces: Sequence[FaceStyle] = ()
 
 
-def take_apart(shape: TopoDS_Shape, name: str = "", color: Color | None = None) -> list[Found]:
-    """Returns the shapes of one product that can be chosen, all under its name and color."""
+def take_apart(
+    shape: TopoDS_Shape,
+    name: str = "",
+    color: Color | None = None,
+    faces: Sequence[FaceStyle] = (),
+) -> list[Found]:
+    """Returns the shapes of one product that can be chosen, all under its name and color.
+
+    Args:
+        shape: the product.
+        name: of the product.
+        color: of the product.
+        faces: that have names or colors of their own.
+    """
     parts = list(_free_parts(shape))
     kinds = [kind_name(part) for part in parts]
     surfaces = [part for part, kind in zip(parts, kinds, strict=True) if kind in _SURFACES]
@@ -51,7 +65,11 @@ def take_apart(shape: TopoDS_Shape, name: str = "", color: Color | None = None) 
     alone = [part for part, kind in zip(parts, kinds, strict=True) if kind == "solid"]
     curves = [part for part, kind in zip(parts, kinds, strict=True) if kind in CURVE_KINDS]
     groups = [_together(group) for group in (surfaces, points) if group]
-    return [Found(part, name, color) for part in (*alone, *groups[:1], *curves, *groups[1:])]
+    ordered = [*alone, *groups[:1], *curves, *groups[1:]]
+    return [
+        Found(part, name, color, faces=own)
+        for part, own in zip(ordered, styles_in(ordered, faces), strict=True)
+    ]
 
 
 def _free_parts(shape: TopoDS_Shape) -> Iterator[TopoDS_Shape]:
@@ -90,7 +108,10 @@ def listed(source: Source, found: Sequence[Found], mm_per_unit: float) -> tuple[
         if measure <= 0.0 and not vertices_of(shape):
             continue
         index = len(kept) + 1
-        kept.append(NamedShape(item.name, index, kind, shape, measure, item.color, item.is_free))
+        faces = carried_over(item.faces, item.shape, shape)
+        kept.append(
+            NamedShape(item.name, index, kind, shape, measure, item.color, item.is_free, faces)
+        )
     return tuple(kept)
 
 

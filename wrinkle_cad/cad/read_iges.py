@@ -53,7 +53,7 @@ def read(source: Source, unit: str | None) -> CadFile:
     found = [
         item
         for leaf in _leaves(source, text)
-        for item in take_apart(leaf.shape, leaf.name, leaf.color)
+        for item in take_apart(leaf.shape, leaf.name, leaf.color, leaf.faces)
     ]
     shapes = listed(source, found, 1.0)
     if not shapes:

@@ -4,16 +4,19 @@ from __future__ import annotations
 
 import io
 import re
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from itertools import groupby
 from typing import Final
 
 from OCP.IFSelect import IFSelect_RetDone
 from OCP.STEPCAFControl import STEPCAFControl_Reader
+from OCP.TopoDS import TopoDS_Shape
 
 from .collect import Found, listed, take_apart
-from .kernel import KERNEL_ERRORS, as_edge, edges_of, kind_name
+from .kernel import KERNEL_ERRORS, as_edge, edges_of, faces_of, kind_name
 from .loose_edges import chain_edges
+from .shape_index import ShapeIndex
 from .shapes import CURVE_KINDS, CadFile, has_role
 from .sniff import STEP, Source
 from .step_links import link_fault
@@ -83,15 +86,31 @@ def _found(leaves: list[Leaf], text: bytes) -> list[Found]:
 
 
 def _found_in_group(leaves: list[Leaf], own_names: list[str]) -> list[Found]:
-    pieces = [item for leaf in leaves for item in take_apart(leaf.shape, leaf.name, leaf.color)]
+    pieces = [
+        item
+        for leaf in leaves
+        for item in take_apart(leaf.shape, leaf.name, leaf.color, leaf.faces)
+    ]
     pieces = _renamed(pieces, own_names)
     is_loose = [kind_name(item.shape) == "edge" for item in pieces]
     loose = [item for item, is_edge in zip(pieces, is_loose, strict=True) if is_edge]
     rest = [item for item, is_edge in zip(pieces, is_loose, strict=True) if not is_edge]
-    inner = [
-        Found(shape, name, is_free=False) for leaf in leaves for name, shape in leaf.named_surfaces
-    ]
+    solids = [item.shape for item in pieces if kind_name(item.shape) == "solid"]
+    inner = [item for leaf in leaves for item in _inner(leaf, solids)]
     return [*rest, *_chained(loose), *inner]
+
+
+def _inner(leaf: Leaf, solids: Sequence[TopoDS_Shape]) -> Iterator[Found]:
+    """Yields the named shells and faces of solids; of shells only the faces named for a role.
+
+    A shell is chosen as a whole, and may have hundreds of faces under a few names.
+    """
+    if not leaf.named_surfaces:
+        return
+    own = ShapeIndex(face for solid in solids for face in faces_of(solid))
+    for name, shape, color in leaf.named_surfaces:
+        if kind_name(shape) == "shell" or has_role(name) or own.find(shape) >= 0:
+            yield Found(shape, name, color or leaf.color, is_free=False)
 
 
 def _renamed(pieces: list[Found], own_names: list[str]) -> list[Found]:

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
 if TYPE_CHECKING:
-    from OCP.TopoDS import TopoDS_Shape
+    from OCP.TopoDS import TopoDS_Face, TopoDS_Shape
 
 CURVE_KINDS: Final = ("edge", "wire")
 SURFACE_KINDS: Final = ("face", "shell", "compound")
@@ -26,6 +26,18 @@ def rail_role(name: str) -> tuple[str, str] | None:
 def has_role(name: str) -> bool:
     """Tells whether a name says what its shape is for: a rail or the upper."""
     return rail_role(name) is not None or name.casefold() == UPPER
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class FaceStyle:
+    """The name and color of one face of a larger shape."""
+
+    face: TopoDS_Face
+    """The face, as the shape holds it."""
+    name: str = ""
+    """Empty if it has none of its own."""
+    color: Sequence[float] | None = None
+    """Red, green, blue, sRGB, 0 to 1; None where it looks like the shape."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -47,6 +59,8 @@ class NamedShape:
     """Red, green, blue, sRGB, 0 to 1; None where the file gives none."""
     is_free: bool = True
     """False for a named face or shell inside a solid or shell that is itself listed."""
+    faces: tuple[FaceStyle, ...] = ()
+    """Its faces that have names or colors of their own."""
 
     @property
     def unit(self) -> str:
@@ -106,3 +120,6 @@ class Part:
     """Any text; control characters become blanks in the file."""
     color: Sequence[float] | None = None
     """Red, green, blue, sRGB, 0 to 1; None for the reading program's default."""
+    faces: Sequence[FaceStyle] = ()
+    """Faces of a shell, solid or compound that have names or colors of their own; the last one of a
+    face counts."""

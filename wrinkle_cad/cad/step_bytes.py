@@ -1,8 +1,8 @@
 r"""The kernel's STEP text -> the text that goes to disk: header, names, colors.
 
 The kernel encodes names as it likes and orders colors by memory addresses, so it writes neither
-here: products get placeholder names, which are replaced by names in the standard's own encoding
-(``\X2\``), and the colors are added after the last entity in the order of the parts.
+here: products and faces get placeholder names, which are replaced by names in the standard's own
+encoding (``\X2\``), and the colors are added after the last entity in the order of the parts.
 """
 
 from __future__ import annotations
@@ -16,12 +16,14 @@ from typing import Final
 from wrinkle_cad.errors import CadError
 
 from .shapes import Part
+from .step_colors import Colored, color_lines, holders
 from .xde import printable
 
 _EPOCH: Final = datetime(1970, 1, 1, tzinfo=UTC)
-_PLACEHOLDER: Final = re.compile(rb"'wrinkle-part-(\d{6})'")
+_PLACEHOLDER: Final = re.compile(rb"'wrinkle-(?:part-(\d{6})|face-(\d{6})-(\d{6}))'")
 # The kernel's own strings hold no semicolon, so a statement ends at the first one.
 _PRODUCT: Final = re.compile(rb"#(\d+) = PRODUCT\(\s*'wrinkle-part-(\d{6})'")
+_FACE: Final = re.compile(rb"#(\d+) = ADVANCED_FACE\(\s*'wrinkle-face-(\d{6})-(\d{6})'")
 _STRUCTURE: Final = re.compile(
     rb"#(\d+) = (PRODUCT_DEFINITION(?:_FORMATION|_SHAPE)?|\w*SHAPE_(?:DEFINITION_)?REPRESENTATION)"
     rb"\(([^;]*)\);"
@@ -53,6 +55,11 @@ def placeholder(i: int) -> str:
     return f"wrinkle-part-{i:06d}"
 
 
+def face_placeholder(i: int, k: int) -> str:
+    """Returns the name under which the kernel is to write the face of style ``k`` of part ``i``."""
+    return f"wrinkle-face-{i:06d}-{k:06d}"
+
+
 def encoded(text: str) -> bytes:
     """Returns a text as a STEP string with its quotes: ASCII only, whatever the text holds."""
     shown = printable(text)[:_STRING_LIMIT]
@@ -69,28 +76,35 @@ def encoded(text: str) -> bytes:
 
 
 def finished_text(raw: bytes, parts: Sequence[Part], header: Header) -> bytes:
-    """Returns the file's text with its own header, the parts' names and their colors.
+    """Returns the file's text with its own header, and the names and colors of parts and faces.
 
     Args:
         raw: what the kernel wrote for the parts, under placeholder names.
-        parts: in the order in which the kernel got them.
+        parts: in the order in which the kernel got them, with the faces in the order in which they
+            got their placeholders.
         header: what the header is to say.
 
     Raises:
-        CadError: the kernel left a part out.
+        CadError: the kernel left a part or a face out.
     """
     text = raw.replace(b"\r\n", b"\n")
     start = text.index(b"\nDATA;")
     end = text.rindex(b"ENDSEC;")
     data = text[start + 1 : end]
     styles = _styles(data, parts)
-    names = [encoded(part.name) for part in parts]
-    data = _PLACEHOLDER.sub(lambda match: names[int(match[1])], data)
+    data = _PLACEHOLDER.sub(lambda match: _name(match, parts), data)
     schema = re.search(rb"FILE_SCHEMA\(.*?\);", text[:start], re.DOTALL)
     if schema is None:
         raise CadError("write STEP", "the CAD kernel wrote no schema")
     head = _header(header, schema[0])
     return b"".join([head, data, styles, b"ENDSEC;\nEND-ISO-10303-21;\n"])
+
+
+def _name(match: re.Match[bytes], parts: Sequence[Part]) -> bytes:
+    part, face_part, face = match.groups()
+    if part is not None:
+        return encoded(parts[int(part)].name)
+    return encoded(parts[int(face_part)].faces[int(face)].name)
 
 
 def _header(header: Header, schema: bytes) -> bytes:
@@ -124,20 +138,34 @@ def _styles(data: bytes, parts: Sequence[Part]) -> bytes:
     if missing:
         name = printable(parts[missing[0]].name)
         raise CadError("write STEP", f"the CAD kernel left out part '{name}' - check its shape")
+    faces = _numbers_of_faces(data, parts)
+    holder_of = holders(data) if faces else {}
     following = max(int(match[1]) for match in _LAST.finditer(data)) + 1
     lines: list[bytes] = []
     for i, part in enumerate(parts):
-        if part.color is not None:
-            red, green, blue = (_real(value) for value in part.color[:3])
-            added = _style(following, *items[i], (red, green, blue))
-            following += len(added)
-            lines += added
+        others = [
+            (faces[i, k], style.color)
+            for k, style in enumerate(part.faces)
+            if style.color is not None
+        ]
+        colored = Colored(*items[i], part.color, others)
+        lines += color_lines(colored, following + len(lines), holder_of)
     return b"".join(line + b"\n" for line in lines)
 
 
-def _real(value: float) -> str:
-    """Returns a number from 0 to 1 as the standard wants it: with a decimal point."""
-    return f"{float(value):.6f}"
+def _numbers_of_faces(data: bytes, parts: Sequence[Part]) -> dict[tuple[int, int], int]:
+    """Returns the number of each face's entity by its part and its place among the styles."""
+    found = {(int(match[2]), int(match[3])): int(match[1]) for match in _FACE.finditer(data)}
+    for i, part in enumerate(parts):
+        missing = sum((i, k) not in found for k in range(len(part.faces)))
+        if missing:
+            name = printable(part.name)
+            raise CadError(
+                "write STEP",
+                f"the CAD kernel left out {missing} of {len(part.faces)} named or colored faces of"
+                f" part '{name}' - check its shape",
+            )
+    return found
 
 
 def _items_of_parts(data: bytes) -> dict[int, tuple[int, list[int]]]:
@@ -168,29 +196,3 @@ def _items_of_parts(data: bytes) -> dict[int, tuple[int, list[int]]]:
 def _followed(links: list[list[int]], part_of: dict[int, int]) -> dict[int, int]:
     """Returns the part that each linking entity leads to."""
     return {number: part_of[to] for number, to, *_ in links if to in part_of}
-
-
-def _style(first: int, context: int, shapes: list[int], color: tuple[str, str, str]) -> list[bytes]:
-    """Returns the entities ``first`` and up that give some items one color as faces and curves."""
-    rgb, fill_color, fill, area, side, usage, font, curve, style = range(first, first + 9)
-    items = range(first + 9, first + 9 + len(shapes))
-    lines = [
-        f"#{rgb} = COLOUR_RGB('',{color[0]},{color[1]},{color[2]});",
-        f"#{fill_color} = FILL_AREA_STYLE_COLOUR('',#{rgb});",
-        f"#{fill} = FILL_AREA_STYLE('',(#{fill_color}));",
-        f"#{area} = SURFACE_STYLE_FILL_AREA(#{fill});",
-        f"#{side} = SURFACE_SIDE_STYLE('',(#{area}));",
-        f"#{usage} = SURFACE_STYLE_USAGE(.BOTH.,#{side});",
-        f"#{font} = DRAUGHTING_PRE_DEFINED_CURVE_FONT('continuous');",
-        f"#{curve} = CURVE_STYLE('',#{font},POSITIVE_LENGTH_MEASURE(0.1),#{rgb});",
-        f"#{style} = PRESENTATION_STYLE_ASSIGNMENT((#{usage},#{curve}));",
-    ]
-    for item, shape in zip(items, shapes, strict=True):
-        lines.append(f"#{item} = STYLED_ITEM('color',(#{style}),#{shape});")
-    listed = ",".join(f"#{item}" for item in items)
-    last = first + 9 + len(shapes)
-    lines.append(
-        f"#{last} = MECHANICAL_DESIGN_GEOMETRIC_PRESENTATION_REPRESENTATION('',"
-        f"({listed}),#{context});"
-    )
-    return [line.encode() for line in lines]

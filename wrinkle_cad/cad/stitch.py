@@ -28,6 +28,7 @@ from .sewing import Sewn, sew
 
 Floats = NDArray[np.float64]
 STEP = "stitch the wrinkle into the upper"
+BODY = "body"
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -130,7 +131,7 @@ def _all_faces(
 ) -> tuple[list[TopoDS_Face], list[str], list[Band]]:
     """Returns the faces to be sewn, what part each is of, and the bands."""
     faces = kernel.faces_of(openings[-1].body_shape)
-    parts, bands = ["body"] * len(faces), list[Band]()
+    parts, bands = [BODY] * len(faces), list[Band]()
     for opening, strip in zip(openings, strips, strict=True):
         name = strip.name
         pieces: list[tuple[str, Sequence[TopoDS_Face]]] = [

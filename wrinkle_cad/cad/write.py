@@ -1,4 +1,4 @@
-"""STEP and STL out: names in any alphabet, colors, world coordinates, the same bytes every time.
+"""STEP and STL out: names, colors, those of single faces too, the same bytes every time.
 
 Each part becomes a product of its own, side by side at the identity placement, so that no program
 has to resolve an assembly. The file appears under its final name only when it is whole.
@@ -9,6 +9,7 @@ from __future__ import annotations
 import io
 import tempfile
 from collections.abc import Sequence
+from dataclasses import replace
 from datetime import datetime
 from pathlib import Path
 from typing import Final
@@ -19,6 +20,7 @@ from OCP.IFSelect import IFSelect_RetDone
 from OCP.STEPCAFControl import STEPCAFControl_Writer
 from OCP.STEPControl import STEPControl_AsIs
 from OCP.StlAPI import StlAPI_Writer
+from OCP.TopAbs import TopAbs_FACE
 from OCP.TopExp import TopExp
 from OCP.TopLoc import TopLoc_Location
 from OCP.TopoDS import TopoDS_Shape
@@ -28,10 +30,12 @@ from wrinkle_cad import settings
 from wrinkle_cad.atomic import write_atomically
 from wrinkle_cad.errors import CadError, ExportError
 
+from .face_styles import carried_over, styles_in
 from .kernel import faces_of, kernel_step
 from .mesh import meshed_copy
+from .shape_index import ShapeIndex
 from .shapes import Part
-from .step_bytes import Header, finished_text, placeholder
+from .step_bytes import Header, face_placeholder, finished_text, placeholder
 from .xde import new_document, printable, set_name, set_parameter, silence_kernel
 
 try:  # OCP 7.9
@@ -84,26 +88,60 @@ def step_bytes(
     """Returns the content of a STEP file, for who writes it elsewhere; see ``write_step``.
 
     Raises:
-        CadError: no parts, an unknown schema, or the kernel cannot write a shape.
+        CadError: no parts, an unknown schema, a face that its part does not hold, or the kernel
+            cannot write a shape.
     """
     if schema not in _SCHEMAS:
         raise CadError("write STEP", f"schema {schema!r} - one of {', '.join(_SCHEMAS)}")
     if not parts:
         raise CadError("write STEP", "no shapes - at least one is needed")
-    for part in parts:
-        if part.shape.IsNull():
-            raise CadError("write STEP", f"part '{printable(part.name)}' is empty - leave it out")
+    ordered = [_with_faces_in_order(part) for part in parts]
     silence_kernel()
     with kernel_step("write STEP"):
-        raw = _kernel_text(_apart([part.shape for part in parts]), _SCHEMAS[schema])
-    return finished_text(raw, parts, header)
+        shapes = _apart([part.shape for part in ordered])
+        own = [
+            replace(part, shape=shape, faces=carried_over(part.faces, part.shape, shape))
+            for part, shape in zip(ordered, shapes, strict=True)
+        ]
+        raw = _kernel_text(own, _SCHEMAS[schema])
+    return finished_text(raw, own, header)
 
 
-def _kernel_text(shapes: Sequence[TopoDS_Shape], schema: str) -> bytes:
+def _with_faces_in_order(part: Part) -> Part:
+    """Returns the part with one style per face, in the order of its faces.
+
+    Raises:
+        CadError: it is empty, it is a single face and has a face, or does not hold one.
+    """
+    name = printable(part.name)
+    if part.shape.IsNull():
+        raise CadError("write STEP", f"part '{name}' is empty - leave it out")
+    if not part.faces:
+        return part
+    if part.shape.ShapeType() == TopAbs_FACE:
+        raise CadError(
+            "write STEP", f"part '{name}' is one face - name and color the part, not its face"
+        )
+    held = ShapeIndex(faces_of(part.shape))
+    strange = sum(held.find(style.face) < 0 for style in part.faces)
+    if strange:
+        raise CadError(
+            "write STEP",
+            f"{strange} of {len(part.faces)} named or colored faces are not in part '{name}' -"
+            " all must be - take them from its shape",
+        )
+    (faces,) = styles_in([part.shape], part.faces)
+    return replace(part, faces=faces)
+
+
+def _kernel_text(parts: Sequence[Part], schema: str) -> bytes:
     document = new_document()
     tool = XCAFDoc_DocumentTool.ShapeTool_s(document.Main())
-    for i, shape in enumerate(shapes):
-        set_name(tool.AddShape(shape, False), placeholder(i))
+    for i, part in enumerate(parts):
+        label = tool.AddShape(part.shape, False)
+        set_name(label, placeholder(i))
+        for k, style in enumerate(part.faces):
+            set_name(tool.AddSubShape(label, style.face), face_placeholder(i, k))
     writer = STEPCAFControl_Writer()
     # Process-wide and changed by other libraries, so set each time.
     for name, value in (
@@ -113,6 +151,7 @@ def _kernel_text(shapes: Sequence[TopoDS_Shape], schema: str) -> bytes:
         ("write.precision.mode", 0),
         ("write.step.assembly", 0),
         ("write.step.nonmanifold", 0),
+        ("write.stepcaf.subshapes.name", 1),
     ):
         set_parameter(name, value)
     writer.SetNameMode(True)

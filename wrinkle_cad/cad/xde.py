@@ -33,7 +33,8 @@ from OCP.XCAFDoc import (
     XCAFDoc_ShapeTool,
 )
 
-from .shapes import has_role
+from .kernel import as_face, faces_of
+from .shapes import FaceStyle, has_role
 
 try:  # OCP 7.9
     from OCP.TDF import TDF_LabelSequence
@@ -61,8 +62,10 @@ class Leaf:
     """Identifies the occurrence that carries the name; the leaf itself if there is no name."""
     color: Color | None
     """Its own color, or that of its instance."""
-    named_surfaces: tuple[tuple[str, TopoDS_Shape], ...]
-    """Faces and shells inside it that have names of their own."""
+    named_surfaces: tuple[tuple[str, TopoDS_Shape, Color | None], ...]
+    """Faces and shells inside it that have names of their own, and their own colors."""
+    faces: tuple[FaceStyle, ...]
+    """Faces inside it that have names or colors of their own."""
 
 
 def silence_kernel() -> None:
@@ -140,8 +143,9 @@ def _walk(
     if not components:
         shape = XCAFDoc_ShapeTool.GetShape_s(product)
         if not shape.IsNull():
-            inner = tuple((text, part.Moved(place)) for text, part in _named_surfaces(product))
-            yield Leaf(shape.Moved(place), name, named_at or path, color, inner)
+            surfaces, faces = _named_surfaces(product, place), _face_styles(product, place)
+            moved = shape.Moved(place)
+            yield Leaf(moved, name, named_at or path, color, tuple(surfaces), tuple(faces))
 
 
 def _product(label: TDF_Label) -> TDF_Label:
@@ -216,21 +220,42 @@ def _color(label: TDF_Label) -> Color | None:
 
 
 def _product_color(product: TDF_Label) -> Color | None:
-    """Returns a product's color, or the one that all its colored pieces share."""
+    """Returns a product's color, or the one that its pieces share.
+
+    Colored faces count where nothing larger has a color, and then all faces must have it.
+    """
     own = _color(product)
     if own is not None:
         return own
-    found = TDF_LabelSequence()
-    XCAFDoc_ShapeTool.GetSubShapes_s(product, found)
-    colors = {_color(found.Value(i)) for i in range(1, found.Length() + 1)} - {None}
+    pieces = [(shape, color) for label, shape in _pieces(product) if (color := _color(label))]
+    colors = {color for shape, color in pieces if shape.ShapeType() != TopAbs_FACE}
+    faces = [color for shape, color in pieces if shape.ShapeType() == TopAbs_FACE]
+    if not colors and faces and len(faces) == len(faces_of(XCAFDoc_ShapeTool.GetShape_s(product))):
+        colors = set(faces)
     return colors.pop() if len(colors) == 1 else None
 
 
-def _named_surfaces(product: TDF_Label) -> Iterator[tuple[str, TopoDS_Shape]]:
+def _pieces(product: TDF_Label) -> Iterator[tuple[TDF_Label, TopoDS_Shape]]:
+    """Yields the pieces of a product that have names or colors."""
     found = TDF_LabelSequence()
     XCAFDoc_ShapeTool.GetSubShapes_s(product, found)
     for i in range(1, found.Length() + 1):
-        name = _name(found.Value(i))
-        shape = XCAFDoc_ShapeTool.GetShape_s(found.Value(i)) if name else None
-        if shape is not None and shape.ShapeType() in (TopAbs_FACE, TopAbs_SHELL):
-            yield name, shape
+        label = found.Value(i)
+        yield label, XCAFDoc_ShapeTool.GetShape_s(label)
+
+
+def _named_surfaces(
+    product: TDF_Label, place: TopLoc_Location
+) -> Iterator[tuple[str, TopoDS_Shape, Color | None]]:
+    for label, shape in _pieces(product):
+        name = _name(label)
+        if name and shape.ShapeType() in (TopAbs_FACE, TopAbs_SHELL):
+            yield name, shape.Moved(place), _color(label)
+
+
+def _face_styles(product: TDF_Label, place: TopLoc_Location) -> Iterator[FaceStyle]:
+    for label, shape in _pieces(product):
+        if shape.ShapeType() == TopAbs_FACE:
+            name, color = _name(label), _color(label)
+            if name or color is not None:
+                yield FaceStyle(as_face(shape.Moved(place)), name, color)
