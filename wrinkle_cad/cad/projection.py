@@ -14,9 +14,9 @@ from OCP.Bnd import Bnd_Box
 from OCP.BRep import BRep_Tool
 from OCP.BRepBndLib import BRepBndLib
 from OCP.BRepExtrema import BRepExtrema_DistShapeShape
-from OCP.BRepTopAdaptor import BRepTopAdaptor_FClass2d
 from OCP.GeomLProp import GeomLProp_SLProps
 from OCP.gp import gp_Pnt, gp_Pnt2d
+from OCP.IntTools import IntTools_FClass2d
 from OCP.ShapeAnalysis import ShapeAnalysis_Surface
 from OCP.TopAbs import TopAbs_OUT, TopAbs_REVERSED
 from OCP.TopoDS import TopoDS_Face, TopoDS_Shape
@@ -55,7 +55,7 @@ class UpperFaces:
             )
         self._shape = upper
         self._surfaces = [ShapeAnalysis_Surface(BRep_Tool.Surface_s(face)) for face in self.faces]
-        self._inside = [BRepTopAdaptor_FClass2d(face, settings.CONFUSION) for face in self.faces]
+        self._inside = [IntTools_FClass2d(face, settings.CONFUSION) for face in self.faces]
         self._boxes = [_box(face) for face in self.faces]
 
     def feet(self, points: Floats) -> Feet:
