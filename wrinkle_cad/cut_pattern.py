@@ -124,8 +124,12 @@ class Pattern:
             test_square=test_square,
         )
 
-    def export_svg(self, path: str | Path, *, profile: str | Path = settings.DXF_PROFILE) -> None:
-        """Writes all pieces as SVG, 1:1 in mm, with the same layers and a scale bar.
+    def export_svg(
+        self, path: str | Path, *, profile: str | Path = settings.DXF_PROFILE
+    ) -> tuple[Finding, ...]:
+        """Writes all pieces as SVG, 1:1 in mm, and returns what had to be changed.
+
+        It has the same layers as the DXF, and a scale bar.
 
         Raises:
             InputError: an unknown profile.
@@ -133,7 +137,7 @@ class Pattern:
         """
         from .pattern.svg import write_svg
 
-        write_svg(Path(path), self.pieces, profile=profile)
+        return write_svg(Path(path), self.pieces, profile=profile)
 
     def export_pdf(
         self,

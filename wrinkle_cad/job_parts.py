@@ -139,7 +139,7 @@ def write_pattern(
         )
     )
     if "svg" in paths:
-        pattern.export_svg(paths["svg"], profile=job.profile)
+        changed.update(dict.fromkeys(pattern.export_svg(paths["svg"], profile=job.profile)))
     if "pdf" in paths:
         changed.update(dict.fromkeys(pattern.export_pdf(paths["pdf"], profile=job.profile)))
     return [asdict(finding) for finding in changed]

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Final
+
 import numpy as np
 from numpy.typing import NDArray
 from OCP.BRep import BRep_Tool
@@ -15,6 +17,9 @@ from OCP.TopoDS import TopoDS_Shape
 from wrinkle_cad import settings
 
 from .kernel import faces_of, kernel_step
+
+_STL_HEAD: Final = 84
+_STL_TRIANGLE: Final = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("tag", "<u2")])
 
 Floats = NDArray[np.float64]
 Indices = NDArray[np.int64]
@@ -70,3 +75,16 @@ def meshed_copy(shape: TopoDS_Shape, tolerance: float, angular_tolerance: float)
     sag = settings.MESH_SAG_PER_TOLERANCE * tolerance
     BRepMesh_IncrementalMesh(own, sag, False, angular_tolerance, False)
     return own
+
+
+def without_collapsed(stl: bytes) -> bytes:
+    """Returns a binary STL file without triangles of which two corners are the same point.
+
+    The mesher makes one at the apex of every cone; to a slicer each is an open border.
+    """
+    triangles = np.frombuffer(stl, dtype=_STL_TRIANGLE, offset=_STL_HEAD)
+    corners = triangles["corners"]
+    same = (corners == np.roll(corners, 1, axis=1)).all(axis=2).any(axis=1)
+    kept = triangles[~same]
+    count = np.array(len(kept), dtype="<u4").tobytes()
+    return b"".join((stl[: _STL_HEAD - len(count)], count, kept.tobytes()))

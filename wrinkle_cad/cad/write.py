@@ -32,7 +32,7 @@ from wrinkle_cad.errors import CadError, ExportError
 
 from .face_styles import carried_over, styles_in
 from .kernel import faces_of, kernel_step
-from .mesh import meshed_copy
+from .mesh import meshed_copy, without_collapsed
 from .shape_index import ShapeIndex
 from .shapes import Part
 from .step_bytes import Header, face_placeholder, finished_text, placeholder
@@ -238,7 +238,7 @@ def stl_bytes(
             copy = Path(folder, "shape.stl")
             if not writer.Write(own, str(copy)):
                 raise CadError("mesh the shape", "the CAD kernel made no triangles")
-            return copy.read_bytes()
+            return without_collapsed(copy.read_bytes())
 
 
 def brep_bytes(shape: TopoDS_Shape) -> bytes:
