@@ -11,7 +11,7 @@ HOSTILE_NUMBERS: Final = (b"0.", b"-1.", b"1.E308", b"-1.E308", b"NaN", b"INF", 
 _NUMBER: Final = re.compile(rb"-?\d+\.\d*(?:E[+-]?\d+)?")
 _WHOLE: Final = re.compile(rb"(?<=[(,])\d+(?=[,)])")
 _REFERENCE: Final = re.compile(rb"#\d+(?=[,)])")
-_KEYWORD: Final = re.compile(rb"(?<==)[A-Z_0-9]+(?=\()")
+_KEYWORD: Final = re.compile(rb"(?<=[= ])[A-Z][A-Z_0-9]+(?=\()")
 _TEXT: Final = re.compile(rb"'[^']*'")
 _HOSTILE_TEXTS: Final = (
     b"'../../x'",
