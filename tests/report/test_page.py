@@ -5,6 +5,8 @@ from __future__ import annotations
 import copy
 import json
 import re
+from hashlib import sha256
+from importlib.resources import files
 from typing import Any
 
 import numpy as np
@@ -28,6 +30,14 @@ from wrinkle_cad.report.views import MeshView, StripView
 HOSTILE = (
     "</script><script>window.pwned=1</script><img src=x onerror='window.pwned=1'>&\"\x00\ud800"
 )
+
+# Of the files in the npm package three@0.180.0.
+RELEASED = {
+    "three.core.min.js": "61ba0df005b05991361d040d8ff670e1aadfd0ce7aeebd1fdb0725957a8957de",
+    "three.module.min.js": "e2b5ee6bccd38fd6d8a2428546b83c5f2426d84b152ef82be8055556e3b40eb6",
+    "OrbitControls.js": "b97879c748170baadeb3fb84cea1ffdf4674e283dc06042f34e2acb95a76042c",
+    "LICENSE": "bfe119ea4fd413f5f7ca3fcd63adb0c4a073ed39daa2fe7d3e6b769e21272601",
+}
 
 
 @pytest.fixture(scope="module")
@@ -204,8 +214,25 @@ def test_faces_beyond_the_vertices_are_refused(good_view: StripView) -> None:
 
 
 def test_the_licence_of_the_viewer_is_on_the_page(bad_page: tuple[dict[str, Any], str]) -> None:
-    assert "Permission is hereby granted" in PageReader(bad_page[1]).by_id("three-licence").text
-    assert "@license" in bad_page[1]
+    licence = PageReader(bad_page[1]).by_id("three-licence").text
+    assert sha256(licence.encode()).hexdigest() == RELEASED["LICENSE"]
+
+
+def test_the_viewer_is_shipped_as_it_was_released() -> None:
+    folder = files("wrinkle_cad.report").joinpath("page", "three")
+    shipped = {file.name: sha256(file.read_bytes()).hexdigest() for file in folder.iterdir()}
+    del shipped["README.md"]
+    assert shipped == RELEASED
+
+
+def test_the_page_holds_the_viewer_as_it_was_released(bad_page: tuple[dict[str, Any], str]) -> None:
+    library = json.loads(PageReader(bad_page[1]).by_id("library").text)
+    held = {name.split("/")[-1]: sha256(text.encode()).hexdigest() for name, text in library}
+    assert held == {
+        "three.core.min.js": RELEASED["three.core.min.js"],
+        "three": RELEASED["three.module.min.js"],
+        "OrbitControls.js": RELEASED["OrbitControls.js"],
+    }
 
 
 def test_the_page_says_who_made_it(bad_page: tuple[dict[str, Any], str]) -> None:

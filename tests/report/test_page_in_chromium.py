@@ -54,6 +54,7 @@ def open_page(
     width: int = 1280,
     height: int = 900,
     dark: bool = False,
+    views: tuple[str, ...] = VIEWS,
 ) -> None:
     path.write_text(html, encoding="utf-8")
     size = {"width": width, "height": height, "deviceScaleFactor": 1, "mobile": width < 600}
@@ -62,7 +63,7 @@ def open_page(
     browser.execute_cdp_cmd("Emulation.setEmulatedMedia", {"features": [scheme]})
     browser.get_log("browser")
     browser.get(path.as_uri())
-    for name in VIEWS:
+    for name in views:
         until(lambda name=name: canvas(browser, name).get_attribute("data-drawn"), f"{name} drawn")
 
 
@@ -131,6 +132,42 @@ def test_an_error_on_the_page_would_be_seen(
     until(lambda: "3-D view" in " ".join(errors(browser)), "an error in the log")
     failure = browser.find_element(By.CSS_SELECTOR, ".stage .failure")
     assert failure.is_displayed()
+
+
+@pytest.mark.parametrize(
+    ("working", "failing", "reason"),
+    [
+        # A browser that does not know import() cannot read the script that says it.
+        ("=> import(url)", "=> import @ (url)", "it cannot load modules"),
+        ("=> import(url)", "=> Promise.reject(new Error('no blobs'))", "no blobs"),
+        ("import{Matrix3 as", "import{Matrix33 as", "Matrix33"),
+    ],
+)
+def test_without_its_library_only_the_3d_view_is_missing(
+    browser: webdriver.Chrome, tmp_path: Path, html: str, working: str, failing: str, reason: str
+) -> None:
+    assert html.count(working) == 1
+    broken = html.replace(working, failing)
+    flat = tuple(name for name in VIEWS if name != "space")
+    open_page(browser, tmp_path / "old.html", broken, views=flat)
+    failure = browser.find_element(By.CSS_SELECTOR, ".stage .failure")
+    until(failure.is_displayed, "the failure told")
+    assert failure.text.startswith("The 3-D view could not start in this browser: ")
+    assert reason in failure.text
+    point_at(browser, canvas(browser, "curves"), 0.5, 0.3)
+    for name in flat:
+        assert not is_blank(picture(browser, name))
+        until(lambda name=name: canvas(browser, name).get_attribute("data-highlight"), name)
+
+
+def test_a_bridge_chosen_before_the_3d_view_starts_is_lit_in_it(
+    browser: webdriver.Chrome, tmp_path: Path, html: str
+) -> None:
+    start = "const library = Report.library"
+    assert html.count(start) == 1
+    early = html.replace(start, f"Report.select(Report.strips[0], 7); {start}")
+    open_page(browser, tmp_path / "early.html", early)
+    assert agreed_highlight(browser) == "7"
 
 
 @pytest.mark.parametrize("name", VIEWS)
@@ -310,3 +347,15 @@ def test_the_page_prints(browser: webdriver.Chrome, tmp_path: Path, html: str, d
     assert pdf.startswith(b"%PDF")
     assert len(pdf) > 50_000
     assert errors(browser) == []
+
+
+def test_the_3d_view_is_there_once_the_page_has_loaded(
+    browser: webdriver.Chrome, tmp_path: Path, html: str
+) -> None:
+    # As when printing from the command line, which waits for nothing but this.
+    asked = """<script>addEventListener("load", () => {
+      dispatchEvent(new Event("beforeprint"));
+      window.printed = document.querySelector("canvas.space").dataset.drawn;
+    });</script>"""
+    open_page(browser, tmp_path / "printed.html", html.replace("</body>", f"{asked}</body>"))
+    assert browser.execute_script("return window.printed") == "yes"

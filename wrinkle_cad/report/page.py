@@ -1,6 +1,13 @@
 """The HTML page of one job: self-contained, opened from disk, without a network.
 
 Every number on it is taken from the JSON by its path; every text goes through the serialiser.
+
+The 3-D view's library stands on the page as the text of its released files, unchanged, and is
+loaded by ``library.js``. That relies on what the HTML standard says and current Chromium, Firefox
+and Safari do: a script may ``import()`` the URL of a blob made by its own page, also when the page
+comes from disk and its origin is ``null``; the blob's type ``text/javascript`` makes it a module;
+modules with the same URL are loaded once, so that all files share one core. The tests try it in
+Chromium. Where it fails, the page says that the 3-D view could not start and shows the rest.
 """
 
 from __future__ import annotations
@@ -16,8 +23,15 @@ from .panels import figures_panel, space_panel, strip_section, tabs
 from .tables import tables_panel, verdict_panel
 from .views import MeshView, StripView, scene_payload
 
-_SCRIPTS: Final = ("core.js", "scene.js", "matrix.js", "curves.js", "pattern.js", "main.js")
-_LIBRARY: Final = "three/three.viewer.min.js"
+_SCRIPTS: Final = (
+    "core.js", "library.js", "scene.js", "matrix.js", "curves.js", "pattern.js", "main.js",
+)  # fmt: skip
+# Under the names that they import each other by, each behind those that it imports.
+_LIBRARY: Final = (
+    ("./three.core.min.js", "three/three.core.min.js"),
+    ("three", "three/three.module.min.js"),
+    ("three/addons/controls/OrbitControls.js", "three/OrbitControls.js"),
+)
 _LICENSE: Final = "three/LICENSE"
 
 
@@ -48,7 +62,7 @@ def write_page(
     scripts = [
         script(to_script(summary), type="application/json", id="summary"),
         script(to_script(scene_payload(strips, body)), type="application/json", id="scene"),
-        script(_packaged(_LIBRARY)),
+        script(_library(), type="application/json", id="library"),
         *(script(_packaged(name)) for name in _SCRIPTS),
     ]
     return page_of(str(numbers.get("/input/file") or "strip"), main, scripts)
@@ -86,6 +100,11 @@ def _header(numbers: Numbers) -> list[Element]:
             node("h1", str(numbers.get("/input/file") or "Strip")),
         )
     ]
+
+
+@cache
+def _library() -> str:
+    return to_script([[name, _packaged(path)] for name, path in _LIBRARY])
 
 
 @cache

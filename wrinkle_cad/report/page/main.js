@@ -51,11 +51,12 @@
   }));
   show(0);
 
-  const canvas = document.querySelector("canvas.space");
-  try {
-    Report.space(canvas, document.querySelector(".space-panel"));
-  } catch (error) {
-    canvas.parentElement.classList.add("broken");
+  const canvas = document.querySelector("canvas.space"), stage = canvas.parentElement;
+  function failed(error) {
+    stage.querySelector(".failure").textContent = "The 3-D view could not start in this browser: " + error.message;
+    stage.classList.add("broken");
     console.error("3-D view: " + error.message);
   }
+  const library = Report.library ? Report.library() : Promise.reject(new Error("it cannot load modules."));
+  library.then((three) => Report.space(three, canvas, document.querySelector(".space-panel"))).catch(failed);
 })();

@@ -1,6 +1,6 @@
 "use strict";
 /* The 3-D view: strips, bands and body, coloured by what the toolbar says. */
-Report.space = (canvas, panel) => {
+Report.space = (THREE, canvas, panel) => {
   const { strips, scene: packed, color, stateOf, foldAt, degrees } = Report;
   const renderer = new THREE.WebGLRenderer({ canvas, antialias: true, alpha: true, preserveDrawingBuffer: true });
   const world = new THREE.Scene();
@@ -221,4 +221,5 @@ Report.space = (canvas, panel) => {
   resize();
   paint();
   frame();
+  if (Report.selected()) highlight(Report.selected());
 };

@@ -1,2 +1,0 @@
-export { AmbientLight, BufferAttribute, BufferGeometry, Color, CylinderGeometry, DirectionalLight, DoubleSide, Group, HemisphereLight, LineBasicMaterial, LineSegments, Mesh, MeshBasicMaterial, MeshLambertMaterial, MeshStandardMaterial, PerspectiveCamera, Raycaster, Scene, SphereGeometry, Vector2, Vector3, Box3, WebGLRenderer } from "three";
-export { OrbitControls } from "three/examples/jsm/controls/OrbitControls.js";
