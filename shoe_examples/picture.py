@@ -81,17 +81,19 @@ def draw(
     ]
     everything = np.concatenate([triangles for triangles, _ in meshed])
     low, high = everything.min(axis=(0, 1)), everything.max(axis=(0, 1))
-    figure = plt.figure(figsize=(7.0 * len(views), 5.2), dpi=90)
+    figure = plt.figure(figsize=(7.0 * len(views), 4.4), dpi=90)
     for i, (elevation, azimuth) in enumerate(views):
         axes = figure.add_subplot(1, len(views), i + 1, projection="3d", proj_type="ortho")
         e, a = np.radians([elevation, azimuth])
         toward = np.array([np.cos(e) * np.cos(a), np.cos(e) * np.sin(a), np.sin(e)])
         colors = np.concatenate([shaded(triangles, color, toward) for triangles, color in meshed])
         axes.add_collection3d(
-            Poly3DCollection(everything, facecolors=colors, edgecolors=colors, linewidths=0.25)
+            Poly3DCollection(
+                everything, facecolors=colors, edgecolors=colors, linewidths=0.25, clip_on=False
+            )
         )
         axes.set(xlim=(low[0], high[0]), ylim=(low[1], high[1]), zlim=(low[2], high[2]))
-        axes.set_box_aspect(tuple(high - low), zoom=1.2)
+        axes.set_box_aspect(tuple(high - low), zoom=1.055)
         axes.view_init(elevation, azimuth)
         axes.set_axis_off()
     figure.subplots_adjust(0, 0, 1, 1, 0, 0)

@@ -8,13 +8,20 @@ lies at the heel. x points from heel to toe, y to the outer side, z up; lengths 
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from itertools import pairwise
+
 import numpy as np
 from numpy.typing import NDArray
+from OCP.BRepBuilderAPI import BRepBuilderAPI_MakeFace, BRepBuilderAPI_Sewing
+from OCP.TopoDS import TopoDS_Face, TopoDS_Shape
 from scipy.interpolate import CubicSpline, make_interp_spline
 
 from wrinkle_cad.cad.splines import Geom_BSplineSurface, make_surface
 
 SIZE = 42
+CONFUSION = 1e-7
+SEAM_TOLERANCE = 1e-6
 
 OUTER = (
     # feather x, y, z;  bulge out, up;  shoulder x, y, z;  crown x, y, z;  collar x, y, z
@@ -60,3 +67,32 @@ def upper_surface(size: float = SIZE) -> Geom_BSplineSurface:
     spline = make_interp_spline(stations, closed, k=3, bc_type=([(1, slope)], [(1, slope)]))
     knots, counts = np.unique(spline.t, return_counts=True)
     return make_surface(spline.c, (knots, (0.0, 1.0)), (counts, (5, 5)), (3, 4))
+
+
+def upper_face(size: float = SIZE) -> TopoDS_Face:
+    """Returns the upper as one face, closed at the heel by a seam, open at feather and collar."""
+    return BRepBuilderAPI_MakeFace(upper_surface(size), CONFUSION).Face()
+
+
+def upper_panels(cuts: Sequence[float], size: float = SIZE) -> list[TopoDS_Face]:
+    """Returns the upper cut into panels from feather to collar, which share no edges yet.
+
+    Args:
+        cuts: where panels meet, in sections from the heel: 0, ..., 20; 10 is the middle of the toe.
+        size: of the shoe.
+    """
+    panels = []
+    for start, end in pairwise(cuts):
+        surface = upper_surface(size)
+        surface.Segment(start, end, 0.0, 1.0)
+        panels.append(BRepBuilderAPI_MakeFace(surface, CONFUSION).Face())
+    return panels
+
+
+def sewn(panels: Sequence[TopoDS_Face]) -> TopoDS_Shape:
+    """Returns the panels as one shell."""
+    sewing = BRepBuilderAPI_Sewing(SEAM_TOLERANCE)
+    for panel in panels:
+        sewing.Add(panel)
+    sewing.Perform()
+    return sewing.SewedShape()

@@ -1,0 +1,45 @@
+"""What the examples on an upper share: write the input, draw what the job makes of it."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+
+from wrinkle_cad.cad.choose import choose_inputs
+from wrinkle_cad.cad.read import read_cad
+from wrinkle_cad.cad.shapes import Part
+from wrinkle_cad.cad.write import write_step
+from wrinkle_cad.job import make_job
+from wrinkle_cad.wrinkled_upper import WrinkledUpper, wrinkle_upper
+
+BODY = (0.60, 0.38, 0.22)
+WRINKLE = (0.74, 0.51, 0.31)
+BAND = (0.68, 0.45, 0.27)
+
+
+def stitched_upper(folder: Path) -> WrinkledUpper:
+    """Returns what the example's job makes of its input."""
+    job = make_job(folder / f"{folder.name}.step", toml_path=folder / "job.toml")
+    chosen = choose_inputs(read_cad(job.input), p=job.p, q=job.q, upper=job.upper)
+    return wrinkle_upper(job, chosen)
+
+
+def draw_result(folder: Path) -> None:
+    """Writes picture.png: the stitched upper from two views."""
+    from shoe_examples.picture import draw
+
+    result = stitched_upper(folder)
+    names = {strip.name for strip in result.strips}
+    colors = {"body": BODY, **dict.fromkeys(names, WRINKLE)}
+    parts = [(faces, colors.get(name, BAND)) for name, faces in result.stitched.parts]
+    draw(parts, folder / "picture.png")
+
+
+def main(folder: Path, parts: Sequence[Part]) -> None:
+    """Writes the input of an example; with ``--picture`` draws what its job makes of it."""
+    step = folder / f"{folder.name}.step"
+    write_step(step, parts)
+    print(f"{step.name}: {', '.join(part.name for part in parts)}")
+    if "--picture" in sys.argv:
+        draw_result(folder)

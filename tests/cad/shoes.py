@@ -1,0 +1,122 @@
+"""Uppers, rails and seeded variations that the tests of carving and stitching start from."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cache
+
+import numpy as np
+from OCP.BRepBuilderAPI import BRepBuilderAPI_Transform
+from OCP.gp import gp_Trsf, gp_Vec
+from OCP.TopoDS import TopoDS_Edge, TopoDS_Face, TopoDS_Shape
+
+from shoe_examples.rails import rail_points, vamp_rail
+from shoe_examples.upper import sewn, upper_face, upper_panels
+from wrinkle_cad.cad import kernel
+from wrinkle_cad.cad.carve import carve
+from wrinkle_cad.cad.opening import Opening
+from wrinkle_cad.cad.profiles import profile_curves
+from wrinkle_cad.cad.smooth import smooth_edge
+from wrinkle_cad.cad.stitch import Stitched, stitch
+from wrinkle_cad.wrinkle import WrinkleStrip
+
+
+@cache
+def shoe() -> TopoDS_Face:
+    return upper_face()
+
+
+@cache
+def rails(front: float = 205.0, back: float = 180.0) -> tuple[TopoDS_Edge, TopoDS_Edge]:
+    return vamp_rail(shoe(), front, skew=3.0), vamp_rail(shoe(), back, skew=-3.0)
+
+
+@cache
+def opening(margin: float = 4.0) -> Opening:
+    return carve(shoe(), *rails(), margin=margin)
+
+
+@cache
+def wrinkle() -> tuple[WrinkleStrip, Stitched]:
+    """One wrinkle of five waves, 3 mm high, with P and Q out of step, stitched into the shoe."""
+    strip = WrinkleStrip(
+        *profile_curves(opening(), waves=5, height=3.0, phase=(0.0, 1.0)), name="wrinkle"
+    )
+    return strip, stitch(opening(), strip)
+
+
+@cache
+def two_panels() -> TopoDS_Shape:
+    """The upper in two faces that share a seam at the toe and one at the heel."""
+    return sewn(upper_panels((0.0, 10.0, 20.0)))
+
+
+def gaping_panels(gap: float) -> TopoDS_Shape:
+    """The two panels, a gap in mm between them all along the toe and the heel."""
+    first, second = upper_panels((0.0, 10.0, 20.0))
+    move = gp_Trsf()
+    move.SetTranslation(gp_Vec(0.0, gap, 0.0))
+    moved = BRepBuilderAPI_Transform(second, move, True).Shape()
+    return kernel.make_compound([first, moved])
+
+
+def lens_rail(sign: float) -> TopoDS_Edge:
+    """A rail that bows forward or backward from two points that both signs share."""
+    points = rail_points(shoe(), 192.0, bow=0.0, reach_deg=(-60.0, 60.0))
+    angles = np.radians(np.linspace(-60.0, 60.0, len(points)))
+    lifted = points + np.outer(sign * 12.0 * np.cos(1.5 * angles), [1.0, 0.0, 0.0])
+    return smooth_edge(lifted)
+
+
+@dataclass(frozen=True)
+class Variation:
+    """A wrinkle at random: where it is, how it is turned, how wide, how wavy, how high."""
+
+    rails: tuple[TopoDS_Edge, TopoDS_Edge]
+    margin: float
+    fade: float
+    waves: float
+    height: float
+    phase: tuple[float, float]
+    side: str
+
+    def made(self) -> tuple[Opening, WrinkleStrip, Stitched]:
+        carved = carve(shoe(), *self.rails, margin=self.margin, fade=self.fade)
+        profiles = profile_curves(
+            carved,
+            waves=self.waves,
+            height=self.height,
+            phase=self.phase,
+            fade=self.fade,
+            side=self.side,  # type: ignore[arg-type]
+        )
+        strip = WrinkleStrip(*profiles, name="wrinkle")
+        return carved, strip, stitch(carved, strip)
+
+
+def variation(seed: int) -> Variation:
+    random = np.random.default_rng(seed)
+    width = random.uniform(8.0, 35.0)
+    middle = min(random.uniform(165.0, 225.0), 232.0 - width / 2)
+    skews = random.uniform(-10.0, 10.0, 2)
+    reach = (-random.uniform(30.0, 68.0), random.uniform(30.0, 68.0))
+    apart = random.uniform(-4.0, 4.0, 2)
+    side = ("out", "both", "in")[random.integers(3)]
+    height = random.uniform(0.5, 2.0 if side == "in" else 5.0)
+    return Variation(
+        rails=(
+            vamp_rail(shoe(), middle + width / 2, skew=skews[0], reach_deg=reach),
+            vamp_rail(
+                shoe(),
+                middle - width / 2,
+                skew=skews[1],
+                reach_deg=(reach[0] + apart[0], reach[1] + apart[1]),
+            ),
+        ),
+        margin=height * random.uniform(0.9, 1.6),
+        fade=random.uniform(0.1, 0.5),
+        waves=random.uniform(2.0, 8.0),
+        height=height,
+        phase=(random.uniform(0.0, 6.28), random.uniform(0.0, 6.28)),
+        side=side,
+    )
