@@ -78,6 +78,12 @@ UNROLLING_ACCURACY: Final = 1e-11
 TURNED_BACK_PER_TOLERANCE: Final = 1e-3
 """A curve segment turns back, seen from its apex, if it sweeps this share of the tolerance back."""
 
+FLAT_LINE_PER_TOLERANCE: Final = 0.2
+"""The flat rails follow their curves to this share of the chord tolerance.
+
+Chords are shorter than their curve in proportion to it, and seams are to agree to 1e-4.
+"""
+
 CRITERIA: Final = ("invalid", "bending")
 """GODT+GMBT: as many locally convex bridges as possible, then least bending."""
 
@@ -355,3 +361,9 @@ SEWN_DIRECTLY: Final = 5e-4
 
 BAND_OVERHANG_LIMIT: Final = 0.02
 """The share of a band that may face into the upper; more of it has folded over."""
+
+BAND_CHECKS: Final = 801
+"""The width of a band is looked at in so many places."""
+
+BAND_NARROWEST: Final = 5e-3
+"""A band that narrows to less than this share of its width between its ends has a slit."""

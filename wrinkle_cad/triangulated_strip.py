@@ -136,7 +136,7 @@ class TriangulatedStrip:
             self.q_samples,
             self.p.point_at,
             self.q.point_at,
-            tolerance=self.tolerance,
+            tolerance=settings.FLAT_LINE_PER_TOLERANCE * self.tolerance,
         )
 
     @cached_property
