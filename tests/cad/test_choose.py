@@ -123,6 +123,7 @@ def test_one_chosen_rail_finds_its_counterpart() -> None:
     [
         (file_of(("", "solid")), {}, "no curves: the file holds only 1 solid"),
         (file_of(("", "face"), ("", "face")), {}, "no curves: the file holds only 2 faces"),
+        (file_of(*[("", "vertex")] * 16), {}, "no curves: the file holds only 16 vertices,"),
         (file_of(("", "face"), is_compressed=True), {}, "gzip-compressed"),
         (file_of(("", "edge")), {}, "only one curve: [1] edge 10 mm"),
         (

@@ -26,7 +26,7 @@ from wrinkle_cad.cad.kernel import (
     shells_of,
 )
 from wrinkle_cad.cad.read import read_cad
-from wrinkle_cad.cad.shapes import Part
+from wrinkle_cad.cad.shapes import FaceStyle, Part
 from wrinkle_cad.cad.step_bytes import Header, encoded
 from wrinkle_cad.cad.step_names import decoded
 from wrinkle_cad.cad.write import brep_bytes, step_bytes, stl_bytes, write_step, write_stl
@@ -145,9 +145,10 @@ from wrinkle_cad.cad.step_bytes import Header
 from wrinkle_cad.cad.write import step_bytes, stl_bytes
 from wrinkle_cad.cad.shapes import Part
 from tests.cad.makers import arc, box
+from tests.cad.test_face_styles import styled
 orders = {"ab": "ab", "ba": "ba", "b": "b"}[sys.argv[1]]
 ballast = [object() for _ in range(int(sys.argv[2]))]
-other = lambda: [Part(box(3.0), "b", (1, 0, 0)), Part(arc(0.0), "Q")]
+other = lambda: [Part(box(3.0), "b", (1, 0, 0)), Part(arc(0.0), "Q"), styled(box())]
 jobs = {"a": parts_of_every_kind, "b": other}
 done = {job: step_bytes(jobs[job](), Header("a.step")) for job in orders}
 print(hashlib.sha256(done["b"] + stl_bytes(box())).hexdigest())
@@ -262,6 +263,21 @@ def test_freecad_reads_the_name_of_a_shell(tmp_path: Path, freecadcmd: str) -> N
     write_step(path, [Part(shells_of(box())[0], "靴の甲 ä (v1.2)", LEATHER)])
     (found,) = seen_by_freecad(freecadcmd, "Import", path)
     assert found == ("靴の甲 ä (v1.2)", "True", "6", pytest.approx(600.0))
+
+
+@pytest.mark.freecad
+@pytest.mark.parametrize("module", ["Import", "Part"])
+def test_freecad_reads_a_shell_with_named_and_colored_faces_as_one(
+    tmp_path: Path, freecadcmd: str, module: str
+) -> None:
+    path = tmp_path / "a.step"
+    shell = shells_of(box())[0]
+    faces = [
+        FaceStyle(faces_of(shell)[i], f"face {i}", color) for i, color in ((0, RED), (3, None))
+    ]
+    write_step(path, [Part(shell, "toe", LEATHER, faces)])
+    (found,) = seen_by_freecad(freecadcmd, module, path)
+    assert found[1:] == ("True", "6", pytest.approx(600.0))
 
 
 @pytest.mark.freecad
