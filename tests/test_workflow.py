@@ -147,3 +147,110 @@ def test_real_rails_become_a_valid_shell_that_survives_its_file(
 def test_a_pair_of_coinciding_rails_is_refused(realdata: Path, tmp_path: Path) -> None:
     job = Job(input=realdata / "spiralwing_guides.brep", output_dir=tmp_path, p="1", q="3")
     assert "same curve" in fail(job).message
+
+
+ON_UPPER = EXAMPLE.parent.parent / "one_wrinkle" / "one_wrinkle.step"
+
+
+def on_upper(folder: Path, **options: object) -> Job:
+    return Job(input=ON_UPPER, output_dir=folder, **options)
+
+
+@pytest.fixture(scope="module")
+def designed(tmp_path_factory: pytest.TempPathFactory) -> JobDone:
+    folder = tmp_path_factory.mktemp("designed")
+    return run(on_upper(folder, waves=5, height=3, margin=4, notches=3, svg=True, pdf=True))
+
+
+def test_waves_on_an_upper_give_one_watertight_shell(designed: JobDone) -> None:
+    stitch = designed.summary["stitch"]
+    assert stitch["is_valid"]
+    assert stitch["free_edges_after"] == stitch["free_edges_before"]
+    assert stitch["max_edge_tolerance_mm"] <= 1e-3
+    assert abs(stitch["area_balance_mm2"]) <= 1e-5 * stitch["area_mm2"]
+    roles = [strip["role"] for strip in designed.summary["strips"]]
+    assert roles == ["strip", "band", "band"]
+
+
+def test_the_step_holds_the_shell_and_the_notches_by_name(designed: JobDone) -> None:
+    from wrinkle_cad.cad.read import read_cad
+
+    shapes = read_cad(next(path for path in designed.outputs if path.suffix == ".step")).shapes
+    assert [shape.kind for shape in shapes].count("shell") == 1
+    names = {shape.name for shape in shapes}
+    for number in (1, 2, 3):
+        assert f"one_wrinkle P notch {number}" in names
+        assert f"one_wrinkle band Q opening notch {number}" in names
+
+
+def test_svg_and_pdf_are_written_on_request(designed: JobDone) -> None:
+    by_kind = {path.suffix: path.read_bytes() for path in designed.outputs}
+    assert by_kind[".pdf"].startswith(b"%PDF")
+    assert b"<svg" in by_kind[".svg"]
+    assert list(by_kind) == [".step", ".stl", ".dxf", ".json", ".html", ".svg", ".pdf"]
+
+
+def test_the_stl_of_a_stitched_upper_is_open_at_the_uppers_border_only(
+    designed: JobDone,
+) -> None:
+    import numpy as np
+    import trimesh
+
+    mesh = trimesh.load(next(path for path in designed.outputs if path.suffix == ".stl"))
+    edges, uses = np.unique(mesh.edges_sorted, axis=0, return_counts=True)
+    assert uses.max() == 2
+    border = mesh.vertices[edges[uses == 1]]
+    length = np.linalg.norm(border[:, 1] - border[:, 0], axis=1).sum()
+    assert length == pytest.approx(designed.summary["stitch"]["free_length_after_mm"], rel=2e-3)
+    assert mesh.is_winding_consistent
+
+
+def test_drawn_profiles_off_the_upper_are_stitched_as_they_are(tmp_path: Path) -> None:
+    from wrinkle_cad.cad.carve import carve
+    from wrinkle_cad.cad.guests import to_build123d
+    from wrinkle_cad.cad.profiles import wrinkle_profiles
+    from wrinkle_cad.cad.read import read_cad
+    from wrinkle_cad.cad.shapes import Part
+    from wrinkle_cad.cad.write import write_step
+
+    given = {shape.name: shape.shape for shape in read_cad(ON_UPPER).shapes}
+    opening = carve(given["upper"], given["P"], given["Q"], margin=4)
+    p, q = wrinkle_profiles(opening, waves=5, height=3)
+    drawn = tmp_path / "drawn.step"
+    parts = [Part(given["upper"], "upper"), Part(p.wrapped, "P"), Part(q.wrapped, "Q")]
+    write_step(drawn, parts)
+    done = run(Job(input=drawn, output_dir=tmp_path / "out"))
+    assert done.summary["stitch"]["is_valid"]
+    assert {finding.code for finding in done.findings} >= {"rail-off-upper"}
+    wrinkle = done.summary["strips"][0]
+    for rail, edge in (("p", p), ("q", q)):
+        own = to_build123d(edge.wrapped)
+        assert wrinkle["seam_lengths_mm"][rail]["space"] == pytest.approx(own.length, rel=1e-3)
+
+
+def test_waves_without_an_upper_are_refused(tmp_path: Path) -> None:
+    failed = fail(Job(input=EXAMPLE, output_dir=tmp_path, waves=5, height=3))
+    assert "no upper" in failed.message
+
+
+def test_missed_limits_are_told_and_the_outputs_written(tmp_path: Path) -> None:
+    done = run(Job(input=EXAMPLE, output_dir=tmp_path, max_fold_deg=1.0, max_twist_deg=80.0))
+    assert len(done.missed_limits) == 1
+    assert "fold" in done.missed_limits[0]
+    assert done.summary["verdict"]["passed"] is False
+    assert len(done.outputs) == 5
+
+
+def test_a_materials_thickness_reaches_the_pattern(tmp_path: Path) -> None:
+    material = tmp_path / "calf.toml"
+    material.write_text('name = "calf"\nthickness_mm = 2.0\nsmallest_bend_radius_mm = 100.0\n')
+    done = run(
+        Job(
+            input=EXAMPLE,
+            output_dir=tmp_path / "out",
+            material=material,
+            surface_side="inside",
+        )
+    )
+    assert any("bend radius" in line for line in done.missed_limits)
+    assert "calf" in (tmp_path / "out" / "vamp_strip.dxf").read_text()
