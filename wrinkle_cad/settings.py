@@ -362,7 +362,7 @@ SEWN_DIRECTLY: Final = 5e-4
 BAND_OVERHANG_LIMIT: Final = 0.02
 """The share of a band that may face into the upper; more of it has folded over."""
 
-BAND_CHECKS: Final = 801
+BAND_CHECKS: Final = 401
 """The width of a band is looked at in so many places."""
 
 BAND_NARROWEST: Final = 5e-3

@@ -119,11 +119,10 @@ def make_band(
     """
     name = "PQ"[i]
     side = side_curve(opening.q_edges if i else opening.p_edges, f"opening along {name}")
-    gaps = _distances(samples.points, side)
-    width = float(gaps.max())
+    width = float(_distances(samples.points, side).max())
     if width <= settings.SEWN_DIRECTLY:
         return None
-    _check_open(gaps, samples, name)
+    _check_open(profile, side, width, name)
     side_samples = sample_directrix(side, tolerance)
     rails = (profile, side) if i else (side, profile)
     sampled = (samples, side_samples) if i else (side_samples, samples)
@@ -159,16 +158,23 @@ def _distances(points: Floats, side: Directrix) -> Floats:
     return gaps
 
 
-def _check_open(gaps: Floats, samples: Samples, name: str) -> None:
+def _check_open(profile: Directrix, side: Directrix, width: float, name: str) -> None:
+    """Checks that a band narrows to nothing at its two ends only.
+
+    Near an end it narrows steadily; anywhere else the width has a minimum of its own.
+    """
+    parameters = np.linspace(*profile.interval, settings.BAND_CHECKS)
+    gaps = _distances(profile.point_at(parameters), side)
     inner = gaps[1:-1]
-    if not len(inner) or float(inner.min()) > settings.COINCIDENT:
-        return
-    at = 1 + int(inner.argmin())
-    raise InputError(
-        f"profile {name} - it touches the opening's boundary at {samples.parameters[at]:.4g} mm"
-        f" along it ({gaps[at]:.1e} mm) and leaves it by {gaps.max():.3g} mm elsewhere - a band has"
-        " no width at its two ends only - carve with a margin, or leave the profile on the boundary"
-    )
+    is_least = (inner <= gaps[:-2]) & (inner <= gaps[2:])
+    narrow = is_least & (inner < settings.BAND_NARROWEST * width)
+    if narrow.any():
+        at = 1 + int(np.flatnonzero(narrow)[inner[narrow].argmin()])
+        raise InputError(
+            f"profile {name} - it touches the opening's boundary at {parameters[at]:.4g} mm along"
+            f" it ({gaps[at]:.1e} mm) and leaves it by {width:.3g} mm elsewhere - a band has no"
+            " width at its two ends only - carve with a margin, or keep the profile on the boundary"
+        )
 
 
 def _check_folds(triangulation: Triangulation, opening: Opening, i: int, width: float) -> None:

@@ -76,12 +76,12 @@ def sew(faces: Sequence[TopoDS_Face], tolerance: float) -> Sewn:
         sewing.Perform()
         sewn = sewing.SewedShape()
     shells = kernel.shells_of(sewn) if not sewn.IsNull() else []
-    found = len(kernel.faces_of(sewn)) if not sewn.IsNull() else 0
+    found = len(kernel.faces_of(shells[0])) if shells else 0
     lost = sewing.NbDeletedFaces() + sewing.NbMultipleEdges()
     if len(shells) != 1 or found != len(faces) or lost:
         raise CadError(
             STEP,
-            f"found {len(shells)} shells of {found} faces,"
+            f"found {len(shells)} shells, the first of {found} faces,"
             f" {sewing.NbDeletedFaces()} faces deleted, {sewing.NbMultipleEdges()} edges with more"
             f" than two faces - 1 shell of {len(faces)} faces is needed - change the margin or move"
             " the rails a little",
