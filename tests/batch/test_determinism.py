@@ -13,6 +13,7 @@ from pathlib import Path
 import psutil
 import pytest
 
+from tests.batch.processes import assert_all_end
 from tests.batch.strips import put_strips
 from wrinkle_cad.batch.conversion import ConversionOptions, convert
 from wrinkle_cad.batch.crew import WorkerCrew
@@ -134,8 +135,7 @@ def kill_and_resume(
         if batch.poll() is None:
             children = psutil.Process(batch.pid).children(recursive=True)
             batch.kill()
-            _, alive = psutil.wait_procs(children, timeout=2.0)
-            assert not alive
+            assert_all_end(children)
         batch.wait()
         # Committed outputs count as present: the next batch only moves them to their names.
         present = {path.name for path in folder.glob("strip*")}

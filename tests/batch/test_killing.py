@@ -14,6 +14,7 @@ import psutil
 import pytest
 
 from tests.batch.conftest import Bench
+from tests.batch.processes import assert_all_end, is_alive
 from tests.batch.stand_ins import KINDS, slow_job
 from wrinkle_cad.batch.staging import leftovers
 
@@ -57,11 +58,6 @@ def assert_all_whole(bench: Bench) -> int:
     )
 
 
-def assert_all_gone(children: list[psutil.Process]) -> None:
-    _, alive = psutil.wait_procs(children, timeout=2.0)
-    assert not alive
-
-
 def kill_and_resume(bench: Bench, seed: int, times: int) -> None:
     bench.put(**{f"f{number:02d}": str(number) for number in range(FILES)})
     moments = random.Random(seed)
@@ -69,7 +65,7 @@ def kill_and_resume(bench: Bench, seed: int, times: int) -> None:
         # Every third time before the first file, when leftovers are put in order.
         finished = moments.randint(1, 4) if number % 3 else 0
         delay = moments.uniform(0.0, 0.04 if finished else 0.5)
-        assert_all_gone(kill_after(start(bench), finished, delay))
+        assert_all_end(kill_after(start(bench), finished, delay))
         complete = assert_all_whole(bench)
     assert 0 < complete < FILES, "the kills fell into the work"
     summary = bench.run(workers=2, job_function=slow_job)
@@ -101,7 +97,7 @@ def test_no_worker_outlives_a_killed_batch(bench: Bench, action: str) -> None:
     assert len(children) >= 2
     batch.kill()
     batch.communicate()
-    assert_all_gone(children)
+    assert_all_end(children)
 
 
 def test_ctrl_c_ends_a_batch_at_once_and_leaves_nothing_half_done(bench: Bench) -> None:
@@ -113,9 +109,20 @@ def test_ctrl_c_ends_a_batch_at_once_and_leaves_nothing_half_done(bench: Bench) 
     batch.send_signal(signal.SIGINT)
     batch.communicate(timeout=5)
     assert time.monotonic() - begin < 2.0
-    assert_all_gone(children)
+    assert_all_end(children)
     assert not bench.files()
     assert not list(leftovers(bench.outputs))
+
+
+def test_a_process_that_lives_on_is_noticed() -> None:
+    sleeper = subprocess.Popen(["sleep", "60"])
+    process = psutil.Process(sleeper.pid)
+    with pytest.raises(AssertionError):
+        assert_all_end([process], 0.1)
+    sleeper.kill()
+    assert_all_end([process])
+    sleeper.wait()
+    assert not is_alive(process)
 
 
 def wait_for_phases(batch: subprocess.Popen[str], count: int) -> None:
