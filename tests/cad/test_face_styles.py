@@ -207,8 +207,6 @@ def test_a_shell_that_stands_twice_has_its_looks_in_both_places(tmp_path: Path) 
     shapes.UpdateAssemblies()
     writer = STEPCAFControl_Writer()
     set_parameter("write.stepcaf.subshapes.name", 1)
-    # As the kernel has it by itself: our own writing turns it off, and colors get lost.
-    set_parameter("write.step.assembly", 2)
     writer.Transfer(document)
     writer.Write(str(tmp_path / "a.step"))
     at = np.array(middle(faces_of(shell)[0]))

@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from OCP.Interface import Interface_Static
 from OCP.TopoDS import TopoDS_Compound, TopoDS_Shape
 
 from tests.cad.makers import arc, box, polyline
@@ -168,6 +169,26 @@ def test_the_same_bytes_come_from_any_process_and_any_order_of_jobs() -> None:
     ]
     assert len({lines[0] for lines in outputs}) == 1
     assert len({lines[1] for i, lines in enumerate(outputs) if i != 2}) == 1
+
+
+def test_what_other_libraries_write_and_read_stays_as_it_was(tmp_path: Path) -> None:
+    """The kernel's parameters are process-wide, and colors depend on some."""
+    b123d = pytest.importorskip("build123d")
+    colored = b123d.Box(1, 2, 3)
+    colored.color = b123d.Color("red")
+    both = b123d.Compound(label="x", children=[colored, b123d.Pos(9, 0, 0) * b123d.Sphere(1)])
+    counts = []
+    for name in ("before", "after"):
+        b123d.export_step(both, str(tmp_path / name))
+        counts.append((tmp_path / name).read_bytes().count(b"STYLED_ITEM"))
+        names = ("write.step.assembly", "write.surfacecurve.mode", "read.stepcaf.subshapes.name")
+        counts += [Interface_Static.IVal_s(parameter) for parameter in names]
+        shell = shells_of(box())[0]
+        style = FaceStyle(faces_of(shell)[0], "cap", RED)
+        write_step(tmp_path / "own.step", [Part(shell, "toe", None, [style])], schema="AP242")
+        read_cad(tmp_path / "own.step")
+    assert counts[0] > 0
+    assert counts[:4] == counts[4:]
 
 
 def test_different_shapes_give_different_bytes() -> None:

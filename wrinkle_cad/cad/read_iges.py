@@ -17,7 +17,7 @@ from .shapes import CadFile
 from .sniff import IGES, Source
 from .step_text import plain_text
 from .units import check_unit, unit_words
-from .xde import Leaf, leaves_of, new_document, set_parameter, silence_kernel
+from .xde import Leaf, kernel_parameters, leaves_of, new_document, silence_kernel
 
 _UNITS: Final = {
     1: "inch",
@@ -108,17 +108,18 @@ def _leaves(source: Source, text: bytes) -> list[Leaf]:
     document = new_document()
     try:
         reader = IGESCAFControl_Reader()
-        set_parameter("xstep.cascade.unit", "MM")
         reader.SetNameMode(True)
         reader.SetColorMode(True)
         # The kernel reads STEP and BREP from memory, but IGES from a file only.
         with tempfile.TemporaryDirectory(prefix="wrinkle-cad-") as folder:
             copy = Path(folder, "input.igs")
             copy.write_bytes(text)
-            is_read = reader.ReadFile(str(copy)) == IFSelect_RetDone
+            with kernel_parameters({"xstep.cascade.unit": "MM"}):
+                is_read = reader.ReadFile(str(copy)) == IFSelect_RetDone
+                is_whole = is_read and reader.Transfer(document)
         if not is_read:
             raise source.fail("damaged: not readable as IGES although its records are whole")
-        return leaves_of(document) if reader.Transfer(document) else []
+        return leaves_of(document) if is_whole else []
     except KERNEL_ERRORS as error:
         words = " ".join(str(error).split()) or type(error).__name__
         raise source.fail(f"damaged: the CAD kernel fails on it ({words})") from error

@@ -23,7 +23,7 @@ from .step_links import link_fault
 from .step_names import curve_names
 from .step_text import check_step, length_units, plain_text, why_no_shape
 from .units import check_unit, unit_words
-from .xde import Leaf, leaves_of, new_document, proper_name, set_parameter, silence_kernel
+from .xde import Leaf, kernel_parameters, leaves_of, new_document, proper_name, silence_kernel
 
 _NAMED_SURFACE: Final = re.compile(
     rb"\b(?:ADVANCED_FACE|FACE_SURFACE|OPEN_SHELL|CLOSED_SHELL)\s*\(\s*'(?!'|NONE'|Unnamed')"
@@ -60,15 +60,16 @@ def _leaves(source: Source, text: bytes) -> list[Leaf]:
     document = new_document()
     try:
         reader = STEPCAFControl_Reader()
-        # Process-wide and changed by other libraries, so set each time.
-        set_parameter("xstep.cascade.unit", "MM")
-        set_parameter("read.stepcaf.subshapes.name", int(bool(_NAMED_SURFACE.search(text))))
         reader.SetNameMode(True)
         reader.SetColorMode(True)
-        if reader.ReadStream(source.path.name, io.BytesIO(text)) != IFSelect_RetDone:
-            raise source.fail("damaged: not readable as STEP although its frame is whole")
-        if reader.NbRootsForTransfer() == 0 or not reader.Transfer(document):
-            return []
+        has_names = int(bool(_NAMED_SURFACE.search(text)))
+        with kernel_parameters(
+            {"xstep.cascade.unit": "MM", "read.stepcaf.subshapes.name": has_names}
+        ):
+            if reader.ReadStream(source.path.name, io.BytesIO(text)) != IFSelect_RetDone:
+                raise source.fail("damaged: not readable as STEP although its frame is whole")
+            if reader.NbRootsForTransfer() == 0 or not reader.Transfer(document):
+                return []
         return leaves_of(document)
     except KERNEL_ERRORS as error:
         words = " ".join(str(error).split()) or type(error).__name__

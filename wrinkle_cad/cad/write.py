@@ -36,7 +36,7 @@ from .mesh import meshed_copy, without_collapsed
 from .shape_index import ShapeIndex
 from .shapes import Part
 from .step_bytes import Header, face_placeholder, finished_text, placeholder
-from .xde import new_document, printable, set_name, set_parameter, silence_kernel
+from .xde import kernel_parameters, new_document, printable, set_name, silence_kernel
 
 try:  # OCP 7.9
     from OCP.TopTools import TopTools_IndexedMapOfShape
@@ -46,6 +46,14 @@ except ImportError:  # OCP 8.0 keeps every collection in one module
     )
 
 _SCHEMAS: Final = {"AP214": "AP214IS", "AP242": "AP242DIS"}
+_PARAMETERS: Final[dict[str, str | int]] = {
+    "write.step.unit": "MM",
+    "write.surfacecurve.mode": 0,
+    "write.precision.mode": 0,
+    "write.step.assembly": 0,
+    "write.step.nonmanifold": 0,
+    "write.stepcaf.subshapes.name": 1,
+}
 
 
 def write_step(
@@ -143,24 +151,14 @@ def _kernel_text(parts: Sequence[Part], schema: str) -> bytes:
         for k, style in enumerate(part.faces):
             set_name(tool.AddSubShape(label, style.face), face_placeholder(i, k))
     writer = STEPCAFControl_Writer()
-    # Process-wide and changed by other libraries, so set each time.
-    for name, value in (
-        ("write.step.schema", schema),
-        ("write.step.unit", "MM"),
-        ("write.surfacecurve.mode", 0),
-        ("write.precision.mode", 0),
-        ("write.step.assembly", 0),
-        ("write.step.nonmanifold", 0),
-        ("write.stepcaf.subshapes.name", 1),
-    ):
-        set_parameter(name, value)
     writer.SetNameMode(True)
     writer.SetColorMode(False)
     stream = io.BytesIO()
-    if not writer.Transfer(document, STEPControl_AsIs):
-        raise CadError("write STEP", "the CAD kernel cannot translate the shapes")
-    if writer.WriteStream(stream) != IFSelect_RetDone:
-        raise CadError("write STEP", "the CAD kernel cannot write the shapes")
+    with kernel_parameters({"write.step.schema": schema, **_PARAMETERS}):
+        if not writer.Transfer(document, STEPControl_AsIs):
+            raise CadError("write STEP", "the CAD kernel cannot translate the shapes")
+        if writer.WriteStream(stream) != IFSelect_RetDone:
+            raise CadError("write STEP", "the CAD kernel cannot write the shapes")
     return stream.getvalue()
 
 

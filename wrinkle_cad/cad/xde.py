@@ -10,7 +10,8 @@ from __future__ import annotations
 import re
 import unicodedata
 from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import Final
 
@@ -88,6 +89,27 @@ def set_parameter(name: str, value: str | int) -> None:
     )
     if not is_set:
         raise ValueError(f"the kernel refuses {name} = {value}")
+
+
+@contextmanager
+def kernel_parameters(wanted: Mapping[str, str | int]) -> Iterator[None]:
+    """Sets process-wide exchange parameters of the kernel for a while; see ``set_parameter``.
+
+    Other libraries in the process rely on them, as this one does.
+    """
+    before = {
+        name: Interface_Static.IVal_s(name)
+        if isinstance(value, int)
+        else Interface_Static.CVal_s(name)
+        for name, value in wanted.items()
+    }
+    try:
+        for name, value in wanted.items():
+            set_parameter(name, value)
+        yield
+    finally:
+        for name, value in before.items():
+            set_parameter(name, value)
 
 
 def new_document() -> TDocStd_Document:
