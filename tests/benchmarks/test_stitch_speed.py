@@ -1,0 +1,99 @@
+"""One wrinkle on the example upper against what the kernel itself needs for the bare work.
+
+The kernel's share, side by side: read the STEP, split the face with the same ribbons, sew the same
+faces, write the STEP.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+from time import perf_counter
+
+import pytest
+from OCP.BRepAlgoAPI import BRepAlgoAPI_Splitter
+from OCP.BRepBuilderAPI import BRepBuilderAPI_Sewing
+from OCP.STEPControl import STEPControl_AsIs, STEPControl_Reader, STEPControl_Writer
+
+from wrinkle_cad import settings
+from wrinkle_cad.cad import kernel, splitting
+from wrinkle_cad.cad import stitch as stitching
+from wrinkle_cad.cad.carve import carve
+from wrinkle_cad.cad.profiles import profile_curves
+from wrinkle_cad.cad.read import read_cad
+from wrinkle_cad.cad.shapes import Part
+from wrinkle_cad.cad.stitch import stitch
+from wrinkle_cad.cad.write import write_step
+from wrinkle_cad.wrinkle import WrinkleStrip
+
+INPUT = Path(__file__).parents[2] / "shoe_examples" / "one_wrinkle" / "one_wrinkle.step"
+ROUNDS = 5
+MOST_TIMES_THE_KERNEL = 3.0
+
+
+def whole_job(folder: Path) -> None:
+    """Reads, carves, designs, stitches and writes."""
+    shapes = {shape.name: shape.shape for shape in read_cad(INPUT).shapes}
+    opening = carve(shapes["upper"], shapes["P"], shapes["Q"], margin=4.0)
+    profiles = profile_curves(opening, waves=5, height=3.0, phase=(0.0, 1.047))
+    stitched = stitch(opening, WrinkleStrip(*profiles, name="wrinkle"))
+    write_step(folder / "stitched.step", [Part(stitched.shell_shape, "upper")])
+
+
+class BareKernel:
+    """The same split, the same faces to sew, and nothing else."""
+
+    def __init__(self, monkeypatch: pytest.MonkeyPatch) -> None:
+        self.tools: list[object] = []
+        self.faces: list[object] = []
+        ribbon, sew = splitting._ribbon, stitching.sew
+
+        def keep_ribbon(*arguments: object) -> object:
+            made = ribbon(*arguments)  # type: ignore[arg-type]
+            self.tools.append(made)
+            return made
+
+        def keep_faces(faces: list[object], tolerance: float) -> object:
+            self.faces = list(faces)
+            return sew(faces, tolerance)  # type: ignore[arg-type]
+
+        monkeypatch.setattr(splitting, "_ribbon", keep_ribbon)
+        monkeypatch.setattr(stitching, "sew", keep_faces)
+
+    def run(self, folder: Path) -> None:
+        """Reads, splits, sews and writes with the kernel's own classes."""
+        reader = STEPControl_Reader()
+        reader.ReadFile(str(INPUT))
+        reader.TransferRoots()
+        (face,) = kernel.faces_of(reader.OneShape())
+        splitter = BRepAlgoAPI_Splitter()
+        splitter.SetArguments(splitting._listed([face]))
+        splitter.SetTools(splitting._listed(self.tools))  # type: ignore[arg-type]
+        splitter.Build()
+        sewing = BRepBuilderAPI_Sewing(settings.SEWING)
+        for part in self.faces:
+            sewing.Add(part)
+        sewing.Perform()
+        writer = STEPControl_Writer()
+        writer.Transfer(sewing.SewedShape(), STEPControl_AsIs)
+        writer.Write(str(folder / "bare.step"))
+
+
+@pytest.mark.benchmark(group="stitch")
+def test_one_wrinkle_takes_at_most_three_times_the_kernels_own_time(
+    benchmark: object, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    with monkeypatch.context() as patch:
+        bare = BareKernel(patch)
+        whole_job(tmp_path)
+    bare.run(tmp_path)
+    ours, kernels = [], []
+    for _ in range(ROUNDS):
+        start = perf_counter()
+        bare.run(tmp_path)
+        middle = perf_counter()
+        whole_job(tmp_path)
+        kernels.append(middle - start)
+        ours.append(perf_counter() - middle)
+    benchmark.extra_info.update(ours_s=min(ours), kernel_s=min(kernels))  # type: ignore[attr-defined]
+    benchmark.pedantic(whole_job, args=(tmp_path,), rounds=1)  # type: ignore[attr-defined]
+    assert min(ours) <= MOST_TIMES_THE_KERNEL * min(kernels), (min(ours), min(kernels))

@@ -1,0 +1,105 @@
+"""Every example on the shoe upper: built anew, run as a user would, its result judged."""
+
+from __future__ import annotations
+
+import importlib
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+from matplotlib import image
+
+from shoe_examples.rails import rail_points
+from shoe_examples.upper import section_poles, upper_face
+from tests.cad.stitch_checks import freecad_report, reread, shell_faults
+from wrinkle_cad.cad import kernel
+from wrinkle_cad.cad.read import read_cad
+from wrinkle_cad.cad.write import write_step
+from wrinkle_cad.job import make_job
+from wrinkle_cad.outcome import JobDone
+from wrinkle_cad.workflow import run_job
+
+FOLDER = Path(__file__).parents[2] / "shoe_examples"
+EXAMPLES = ("one_wrinkle", "three_wrinkles", "across_seam", "feather_to_feather")
+
+
+def run(name: str, output_dir: Path) -> JobDone:
+    job = make_job(
+        FOLDER / name / f"{name}.step", {"output_dir": output_dir}, FOLDER / name / "job.toml"
+    )
+    outcome = run_job(job)
+    assert isinstance(outcome, JobDone), outcome
+    return outcome
+
+
+def test_the_upper_is_a_last_of_size_42() -> None:
+    face = upper_face()
+    low, high = kernel.bounding_box(face)
+    assert len(section_poles()) >= 8
+    assert high[0] - low[0] == pytest.approx(280.0, abs=4.0)
+    assert high[1] - low[1] == pytest.approx(100.0, abs=3.0)
+    assert kernel.is_valid(face)
+    assert len(kernel.free_edges(face)) == 2
+    smaller = kernel.bounding_box(upper_face(39))
+    assert smaller[1][0] - smaller[0][0] == pytest.approx((high[0] - low[0]) * 39 / 42)
+
+
+def test_the_instep_girth_is_that_of_size_42() -> None:
+    """Over the instep from feather edge to feather edge, and back under the foot."""
+    over = rail_points(upper_face(), 150.0, reach_deg=(-88.0, 88.0))
+    girth = np.linalg.norm(np.diff(over, axis=0), axis=1).sum() + np.linalg.norm(over[-1] - over[0])
+    assert girth == pytest.approx(250.0, abs=12.0)
+
+
+@pytest.mark.parametrize("name", EXAMPLES)
+def test_an_example_runs_and_its_shell_is_sound(name: str, tmp_path: Path) -> None:
+    done = run(name, tmp_path)
+    assert {path.suffix for path in done.outputs} >= {".step", ".stl", ".dxf", ".json", ".html"}
+    (upper,) = read_cad(FOLDER / name / f"{name}.step").surfaces()
+    report = json.loads((tmp_path / f"{name}.json").read_text(encoding="utf-8"))["stitch"]
+    shell = reread(tmp_path / f"{name}.step")
+    assert shell_faults(shell, report["faces"], upper.shape) == []
+    assert report["is_valid"]
+    assert report["max_edge_tolerance_mm"] <= 1e-3
+    assert abs(report["area_balance_mm2"]) <= 1e-5 * upper.measure
+    assert report["free_length_after_mm"] == pytest.approx(
+        report["free_length_before_mm"], abs=1e-3
+    )
+
+
+@pytest.mark.freecad
+def test_freecad_reads_every_example(freecadcmd: str, tmp_path: Path) -> None:
+    paths, expected = [], []
+    for name in EXAMPLES:
+        run(name, tmp_path / name)
+        paths.append(tmp_path / name / f"{name}.step")
+        summary = (tmp_path / name / f"{name}.json").read_text(encoding="utf-8")
+        report = json.loads(summary)["stitch"]
+        expected.append(f"1 {report['faces']} True {round(report['free_length_before_mm'], 2)}")
+    assert freecad_report(freecadcmd, paths, tmp_path) == expected
+
+
+@pytest.mark.parametrize("name", EXAMPLES)
+def test_the_committed_input_is_what_its_script_builds(name: str, tmp_path: Path) -> None:
+    built = tmp_path / "built.step"
+    write_step(built, importlib.import_module(f"shoe_examples.{name}.build").parts())
+    fresh, kept = (read_cad(path) for path in (built, FOLDER / name / f"{name}.step"))
+    assert [shape.name for shape in fresh.shapes] == [shape.name for shape in kept.shapes]
+    for new, old in zip(fresh.shapes, kept.shapes, strict=True):
+        assert new.measure == pytest.approx(old.measure, rel=1e-9)
+        assert np.allclose(
+            kernel.bounding_box(new.shape), kernel.bounding_box(old.shape), atol=1e-6
+        )
+
+
+@pytest.mark.parametrize("name", EXAMPLES)
+def test_the_picture_shows_the_upper_from_two_views(name: str) -> None:
+    picture = image.imread(FOLDER / name / "picture.png")[..., :3]
+    is_drawn = picture.min(axis=2) < 0.9
+    half = picture.shape[1] // 2
+    assert is_drawn[:, :half].mean() > 0.1
+    assert is_drawn[:, half:].mean() > 0.1
+    assert is_drawn[:, :2].mean() == is_drawn[:, -2:].mean() == 0.0
+    # Shaded, not flat: many tones.
+    assert len(np.unique((picture[is_drawn] * 40).astype(int), axis=0)) > 50
