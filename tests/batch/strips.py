@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Final
 
 EXAMPLE: Final = Path(__file__).parents[2] / "shoe_examples" / "vamp_strip" / "vamp_strip.step"
-_POINT: Final = re.compile(r"(CARTESIAN_POINT\(\s*'[^']*'\s*,\s*\()([^)]*)(\)\))")
+_POINT: Final = re.compile(r"(CARTESIAN_POINT\(\s*'[^']*'\s*,\s*\()([^)]*)(\)\s*\))")
 
 
 def stretched(factors: tuple[float, float, float]) -> str:
@@ -23,7 +23,10 @@ def stretched(factors: tuple[float, float, float]) -> str:
         )
         return f"{match.group(1)}{moved}{match.group(3)}"
 
-    return _POINT.sub(stretch, EXAMPLE.read_text())
+    text = EXAMPLE.read_text()
+    moved, count = _POINT.subn(stretch, text)
+    assert count == text.count("CARTESIAN_POINT"), "every point is moved"
+    return moved
 
 
 def put_strips(folder: Path, count: int, seed: int = 0) -> list[Path]:
