@@ -367,3 +367,12 @@ BAND_CHECKS: Final = 401
 
 BAND_NARROWEST: Final = 5e-3
 """A band that narrows to less than this share of its width between its ends has a slit."""
+
+BAND_LINE: Final = 1025
+"""Distances to an opening's side are first looked for on so many points of it."""
+
+DRAWN_EDGE_GAP: Final = 2e-6
+"""mm; an outline that cannot be drawn on a face this exactly is cut with ribbons instead."""
+
+DRAWN_EDGE_DENSITIES: Final = (1, 2, 4, 8)
+"""Points of a drawn curve in space per point of its side, tried in turn."""

@@ -1,27 +1,32 @@
 """One wrinkle on the example upper against what the kernel itself needs for the bare work.
 
-The kernel's share, side by side: read the STEP, split the face with the same ribbons, sew the same
-faces, write the STEP.
+The kernel's share, side by side: read the STEP, project the outline and split the face, sew the
+same faces, write the STEP.
 """
 
 from __future__ import annotations
 
 from pathlib import Path
 from time import perf_counter
+from typing import Any
 
 import pytest
 from OCP.BRepAlgoAPI import BRepAlgoAPI_Splitter
 from OCP.BRepBuilderAPI import BRepBuilderAPI_Sewing
+from OCP.BRepOffsetAPI import BRepOffsetAPI_NormalProjection
 from OCP.STEPControl import STEPControl_AsIs, STEPControl_Reader, STEPControl_Writer
+from OCP.TopoDS import TopoDS_Face
 
 from wrinkle_cad import settings
+from wrinkle_cad.cad import carve as carving
 from wrinkle_cad.cad import kernel, splitting
 from wrinkle_cad.cad import stitch as stitching
-from wrinkle_cad.cad.carve import carve
+from wrinkle_cad.cad.outline import Side
 from wrinkle_cad.cad.profiles import profile_curves
 from wrinkle_cad.cad.read import read_cad
+from wrinkle_cad.cad.sewing import Sewn
 from wrinkle_cad.cad.shapes import Part
-from wrinkle_cad.cad.stitch import stitch
+from wrinkle_cad.cad.smooth import smooth_edge
 from wrinkle_cad.cad.write import write_step
 from wrinkle_cad.wrinkle import WrinkleStrip
 
@@ -33,30 +38,29 @@ MOST_TIMES_THE_KERNEL = 3.0
 def whole_job(folder: Path) -> None:
     """Reads, carves, designs, stitches and writes."""
     shapes = {shape.name: shape.shape for shape in read_cad(INPUT).shapes}
-    opening = carve(shapes["upper"], shapes["P"], shapes["Q"], margin=4.0)
+    opening = carving.carve(shapes["upper"], shapes["P"], shapes["Q"], margin=4.0)
     profiles = profile_curves(opening, waves=5, height=3.0, phase=(0.0, 1.047))
-    stitched = stitch(opening, WrinkleStrip(*profiles, name="wrinkle"))
+    stitched = stitching.stitch(opening, WrinkleStrip(*profiles, name="wrinkle"))
     write_step(folder / "stitched.step", [Part(stitched.shell_shape, "upper")])
 
 
 class BareKernel:
-    """The same split, the same faces to sew, and nothing else."""
+    """The kernel's own projection, split, sewing and file work on the same shapes."""
 
     def __init__(self, monkeypatch: pytest.MonkeyPatch) -> None:
-        self.tools: list[object] = []
-        self.faces: list[object] = []
-        ribbon, sew = splitting._ribbon, stitching.sew
+        self.sides: list[Side] = []
+        self.faces: list[TopoDS_Face] = []
+        split, sew = carving.split_faces, stitching.sew
 
-        def keep_ribbon(*arguments: object) -> object:
-            made = ribbon(*arguments)  # type: ignore[arg-type]
-            self.tools.append(made)
-            return made
+        def keep_sides(*arguments: Any) -> splitting.Split:
+            self.sides = list(arguments[2])
+            return split(*arguments)
 
-        def keep_faces(faces: list[object], tolerance: float) -> object:
+        def keep_faces(faces: list[TopoDS_Face], tolerance: float) -> Sewn:
             self.faces = list(faces)
-            return sew(faces, tolerance)  # type: ignore[arg-type]
+            return sew(faces, tolerance)
 
-        monkeypatch.setattr(splitting, "_ribbon", keep_ribbon)
+        monkeypatch.setattr(carving, "split_faces", keep_sides)
         monkeypatch.setattr(stitching, "sew", keep_faces)
 
     def run(self, folder: Path) -> None:
@@ -64,10 +68,14 @@ class BareKernel:
         reader = STEPControl_Reader()
         reader.ReadFile(str(INPUT))
         reader.TransferRoots()
-        (face,) = kernel.faces_of(reader.OneShape())
+        face = kernel.faces_of(reader.OneShape())[0]
+        projection = BRepOffsetAPI_NormalProjection(face)
+        for side in self.sides:
+            projection.Add(smooth_edge(side.points))
+        projection.Build()
         splitter = BRepAlgoAPI_Splitter()
         splitter.SetArguments(splitting._listed([face]))
-        splitter.SetTools(splitting._listed(self.tools))  # type: ignore[arg-type]
+        splitter.SetTools(splitting._listed([projection.Projection()]))
         splitter.Build()
         sewing = BRepBuilderAPI_Sewing(settings.SEWING)
         for part in self.faces:

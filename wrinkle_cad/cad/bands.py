@@ -144,17 +144,18 @@ def _triangulated(p: Samples, q: Samples, planarity: float) -> Triangulation:
 
 def _distances(points: Floats, side: Directrix) -> Floats:
     """Returns (k,) mm: how far points are from a curve, exact to far below the band's width."""
-    parameters = np.union1d(np.linspace(*side.interval, 2049), side.breaks)
+    parameters = np.union1d(np.linspace(*side.interval, settings.BAND_LINE), side.breaks)
     line = side.point_at(parameters)
     chord = np.diff(line, axis=0)
     square = np.maximum((chord**2).sum(axis=1), np.finfo(np.float64).tiny)
-    gaps = np.empty(len(points))
+    feet = np.empty(len(points))
     for i, point in enumerate(points):
         share = np.clip(((point - line[:-1]) * chord).sum(axis=1) / square, 0.0, 1.0)
-        foot = np.interp(np.arange(len(share)) + share, np.arange(len(parameters)), parameters)
-        nearest = int(np.linalg.norm(line[:-1] + share[:, None] * chord - point, axis=1).argmin())
-        at = side.point_at(foot[nearest : nearest + 1])[0]
-        gaps[i] = float(np.linalg.norm(at - point))
+        off = line[:-1] + share[:, None] * chord - point
+        nearest = int((off * off).sum(axis=1).argmin())
+        step = parameters[nearest + 1] - parameters[nearest]
+        feet[i] = parameters[nearest] + share[nearest] * step
+    gaps: Floats = np.linalg.norm(side.point_at(feet) - points, axis=1)
     return gaps
 
 

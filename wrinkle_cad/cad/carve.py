@@ -219,7 +219,7 @@ def _check_whole(faces: UpperFaces, body: Sequence[TopoDS_Face], allow_split: bo
 
 def _checked_areas(faces: Sequence[TopoDS_Face], split: Split) -> tuple[float, float, float]:
     """Returns mm^2: upper, body, removed; a face that was not split is measured once."""
-    bound = settings.AREA_BALANCE / 10.0
+    bound = settings.AREA_BALANCE / 4.0
     whole = kept = cut = 0.0
     for face, group, inside in zip(faces, split.pieces, split.is_inside, strict=True):
         (before,) = face_areas([face], bound)

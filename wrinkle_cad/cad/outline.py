@@ -34,6 +34,8 @@ class Side:
     """(k, 3) unit normals of the upper."""
     inward: Floats
     """(k, 3) unit vectors along the upper, into the opening."""
+    faces: NDArray[np.int64]
+    """(k,) index of the face that each point lies on."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -134,14 +136,14 @@ def faded_margin(shares: Floats, margin: float, fade: float) -> Floats:
 def side_of(upper: UpperFaces, rail: Rail, toward: Floats, margin: Floats, name: str) -> Side:
     """Returns the side of an outline along a rail, ``margin`` (k,) mm outside of it."""
     if not (margin > 0.0).any():
-        return Side(name, rail.points, rail.feet.normals, toward)
+        return Side(name, rail.points, rail.feet.normals, toward, rail.feet.faces)
     feet = upper.feet(rail.points - margin[:, None] * toward)
     points, normals = feet.points.copy(), feet.normals.copy()
     points[[0, -1]], normals[[0, -1]] = rail.points[[0, -1]], rail.feet.normals[[0, -1]]
     tangents = unit(np.gradient(points, axis=0))
     inward = unit(np.cross(normals, tangents))
     inward *= np.sign((inward * toward).sum(axis=1))[:, None]
-    return Side(name, points, normals, inward)
+    return Side(name, points, normals, inward, feet.faces)
 
 
 def end_between(upper: UpperFaces, p: Side, q: Side, at: int, name: str) -> Side | None:
@@ -165,7 +167,7 @@ def end_between(upper: UpperFaces, p: Side, q: Side, at: int, name: str) -> Side
     )
     inward = unit(np.cross(normals, unit(np.gradient(points, axis=0))))
     inward *= np.sign(inward @ onward)[:, None]
-    return Side(name, points, normals, inward)
+    return Side(name, points, normals, inward, feet.faces)
 
 
 def unit(vectors: Floats) -> Floats:

@@ -1,9 +1,9 @@
 """Cuts the faces of an upper along an outline and tells which pieces lie inside.
 
-Each side of the outline becomes a narrow ribbon that stands on the upper; the kernel splits the
-faces with the ribbons. A ribbon crosses seams, gaps and borders without being told of them. A piece
-lies inside if it is on the inner side of the outline at each of its new edges, or joins such a
-piece.
+An outline on one face is drawn onto it. Any other becomes narrow ribbons that stand on the upper,
+one per side, which cross seams, gaps and borders without being told of them. The kernel splits the
+faces with these edges or ribbons. A piece lies inside if it is on the inner side of the outline at
+each of its new edges, or joins such a piece.
 """
 
 from __future__ import annotations
@@ -28,6 +28,7 @@ from wrinkle_cad import settings
 from wrinkle_cad.errors import CadError
 
 from . import kernel
+from .drawn_edges import drawn_edges
 from .outline import Side, unit
 from .shape_index import ShapeIndex
 from .splines import make_surface
@@ -87,10 +88,13 @@ def split_faces(
         CadError: the kernel cannot split, or a piece lies on both sides of the outline.
     """
     with kernel.kernel_step(STEP):
+        drawn = _drawn(faces, sides, overrun)
+        tools = drawn or [
+            _ribbon(side, height, over) for side, over in zip(sides, overrun, strict=True)
+        ]
         splitter = BRepAlgoAPI_Splitter()
         splitter.SetArguments(_listed([upper]))
-        ribbons = [_ribbon(side, height, over) for side, over in zip(sides, overrun, strict=True)]
-        splitter.SetTools(_listed(ribbons))
+        splitter.SetTools(_listed(tools))
         splitter.SetNonDestructive(True)
         splitter.SetRunParallel(False)
         splitter.Build()
@@ -98,7 +102,20 @@ def split_faces(
             raise CadError(STEP, "the kernel's splitter failed - move the rails a little")
         pieces = tuple(_pieces_of(splitter, face) for face in faces)
         section = ShapeIndex(splitter.SectionEdges())
+        for edge in drawn or ():
+            for part in list(splitter.Modified(edge)) or [edge]:
+                section.add(part)
     return _sorted(pieces, section, sides)
+
+
+def _drawn(
+    faces: Sequence[TopoDS_Face], sides: Sequence[Side], overrun: Sequence[tuple[float, float]]
+) -> list[TopoDS_Edge] | None:
+    """Returns the outline as edges on the face that holds all of it, None if none does."""
+    owners = np.unique(np.concatenate([side.faces for side in sides]))
+    if len(owners) > 1 or any(max(over) > 0.0 for over in overrun):
+        return None
+    return drawn_edges(faces[int(owners[0])], sides)
 
 
 def _listed(shapes: Sequence[TopoDS_Shape]) -> TopTools_ListOfShape:

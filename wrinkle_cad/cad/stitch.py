@@ -120,7 +120,7 @@ def _carved_in_turn(openings: Sequence[Opening]) -> list[Opening]:
     chained = [openings[0]]
     for opening in openings[1:]:
         body = chained[-1].body_shape
-        if not opening.upper_shape.IsSame(body):
+        if not opening.given_shape.IsSame(body):
             opening = carve_shape(body, opening.request, source=opening.source)
         chained.append(opening)
     return chained
@@ -199,7 +199,8 @@ def _stitched(
         free_length_after_mm=border.length_after,
         max_edge_tolerance_mm=_checked_tolerance(sewn.shell, upper),
         area_balance_mm2=sum(opening.area_balance for opening in chained),
-        area_mm2=sum(face_areas(sewn.faces, settings.AREA_BALANCE)),
+        area_mm2=chained[-1].areas[1]
+        + sum(face_areas(sewn.faces[parts.count(BODY) :], settings.AREA_BALANCE)),
         is_valid=True,
         seams=seam_angles(sewn.faces, parts),
         bands=tuple(bands),
