@@ -103,7 +103,8 @@ def _normal_faults(mesh: trimesh.Trimesh, upper: TopoDS_Shape) -> list[str]:
             checked += 1
             turned += float(mesh.face_normals[i] @ foot.normals[0]) < 0.0
     # Near a sharp edge the nearest face may be the one behind.
-    return [] if checked > 50 and turned <= 0.01 * checked else [f"{turned} of {checked} normals turned"]
+    is_sound = checked > 50 and turned <= 0.01 * checked
+    return [] if is_sound else [f"{turned} of {checked} normals turned"]
 
 
 def freecad_report(freecadcmd: str, paths: list[Path], folder: Path) -> list[str]:

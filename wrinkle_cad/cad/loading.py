@@ -6,7 +6,7 @@ import gc
 from collections.abc import Iterator
 from contextlib import contextmanager
 
-from ..errors import CadError
+from wrinkle_cad.errors import CadError
 
 
 @contextmanager
