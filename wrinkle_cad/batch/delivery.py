@@ -56,6 +56,7 @@ def deliver(
         try:
             _check_foreign(job, result.outputs, frozenset(known_outputs))
             _unpack(staging, result.output_bytes)
+            flush_files(staging, [file.name for file in result.outputs])
             record = None if base is None else _done_record(base, result, outcome)
             line = "" if record is None else record_to_line(record)
             ready = commit_staging(staging, line)
@@ -133,8 +134,6 @@ def _check_foreign(job: Job, outputs: Iterable[OutputFile], known: frozenset[str
 def _unpack(staging: Path, content: Mapping[str, bytes]) -> None:
     for name, data in content.items():
         (staging / name).write_bytes(data)
-    if content:
-        flush_files(staging, tuple(content))
 
 
 def _write_failure(job: Job, outcome: JobDone, error: Exception) -> JobFailed:

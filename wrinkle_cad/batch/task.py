@@ -15,7 +15,6 @@ from wrinkle_cad.versions import installed_versions
 
 from .fingerprint import hash_file
 from .manifest import OutputFile
-from .staging import flush_files
 
 JobFunction = Callable[..., JobDone | JobFailed]
 """Called as ``job_function(job, progress=...)``; found by its name in a worker."""
@@ -44,7 +43,7 @@ class TaskResult:
     outcome: JobDone | JobFailed
     """The outcome; paths in it lie in the task's output folder."""
     outputs: tuple[OutputFile, ...] = ()
-    """The files written, all on the disk."""
+    """The files written."""
     output_bytes: Mapping[str, bytes] = field(default_factory=dict)
     """Their content by name, when the input came as bytes."""
 
@@ -54,7 +53,7 @@ def run_task(task: Task, progress: Progress | None = None) -> TaskResult:
 
     Raises:
         JobError: this machine has other versions than the task wants.
-        OSError: an output cannot be read back or flushed.
+        OSError: an output cannot be read back.
     """
     _check_versions(task.versions)
     if task.input_bytes is None:
@@ -77,7 +76,6 @@ def _run_in_place(task: Task, progress: Progress | None) -> TaskResult:
         return TaskResult(outcome=outcome)
     folder = task.job.output_dir
     paths = [folder / path.name for path in outcome.outputs]
-    flush_files(folder, [path.name for path in paths])
     files = tuple(OutputFile(path.name, path.stat().st_size, hash_file(path)) for path in paths)
     return TaskResult(outcome=outcome, outputs=files)
 
