@@ -37,6 +37,12 @@ def test_one_number_stands_for_both_rails_and_for_all_sides() -> None:
     assert job.seam_allowance == (6.0, 6.0, 6.0, 6.0)
 
 
+def test_positions_and_holes_become_tuples() -> None:
+    job = Job(input=Path("x.step"), notch_at_p=[10, 20], drill_holes=[[0.5, 0.25]])
+    assert job.notch_at_p == (10.0, 20.0)
+    assert job.drill_holes == ((0.5, 0.25),)
+
+
 def test_a_profile_file_in_a_job_file_starts_at_its_folder(tmp_path: Path) -> None:
     (tmp_path / "job.toml").write_text('profile = "our_layers.toml"\n')
     read = read_job_toml(tmp_path / "job.toml")
@@ -75,6 +81,11 @@ def test_criteria_from_a_job_file_become_a_tuple(tmp_path: Path) -> None:
         ({"seam_allowance": (1, 2)}, "seam_allowance"),
         ({"seam_allowance": (1, 2, 3, math.nan)}, "seam_allowance"),
         ({"grain": 1}, "grain"),
+        ({"notch_at_p": "10"}, "notch_at_p"),
+        ({"notch_at_q": (1, math.inf)}, "notch_at_q"),
+        ({"drill_holes": ((0.5,),)}, "drill_holes"),
+        ({"mitre_limit": 0}, "mitre_limit"),
+        ({"notch_kind": "round"}, "notch_kind"),
         ({"notches": -1}, "notches"),
         ({"notches": 1.5}, "notches"),
         ({"quantity": 0}, "quantity"),

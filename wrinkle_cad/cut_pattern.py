@@ -12,7 +12,7 @@ from . import settings
 from .findings import Finding
 from .pattern.making import make_pieces, rail_corners
 from .pattern.nesting import laid_out
-from .pattern.options import PieceSettings
+from .pattern.options import NotchRule, PieceSettings
 from .pattern.piece import PatternPiece
 
 if TYPE_CHECKING:
@@ -192,12 +192,18 @@ def _settings_by_strip(
         both = rail_corners(strip.unrolling, strip.triangulation, name=strip.name, settings=chosen)
         for rail, at in zip(_rails(strip), both, strict=True):
             corners.setdefault(rail, []).extend(at.tolist())
+    rules: dict[int, NotchRule] = {}
     for strip in strips:
         p_rail, q_rail = _rails(strip)
+        # A band follows the rule of the rail that it shares, on its other side as well.
+        shared = rules.get(p_rail) or rules.get(q_rail)
+        p_rule = rules.setdefault(p_rail, shared or chosen.notches_p)
+        q_rule = rules.setdefault(q_rail, shared or chosen.notches_q)
         yield replace(
             chosen,
-            notches_p=replace(chosen.notches_p, partner_corners=tuple(corners[p_rail])),
-            notches_q=replace(chosen.notches_q, partner_corners=tuple(corners[q_rail])),
+            notches_p=replace(p_rule, partner_corners=tuple(corners[p_rail])),
+            notches_q=replace(q_rule, partner_corners=tuple(corners[q_rail])),
+            drill_holes=() if shared else chosen.drill_holes,
         )
 
 

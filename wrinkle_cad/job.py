@@ -24,12 +24,20 @@ _CHOICES: Final[dict[str, tuple[str, ...]]] = {
     "unit": ("mm", "cm", "m", "inch", "ft"),
     "side": ("out", "in", "both"),
     "dxf_version": ("R12", "R2000", "R2010"),
+    "notch_kind": ("slit", "v", "t", "castle", "check", "u"),
     "curves": ("lines", "arcs", "splines"),
     "surface_side": ("inside", "middle", "outside"),
     "hand": ("left", "right"),
     "overlap": ("split", "refuse"),
 }
-_POSITIVE: Final = ("tolerance", "max_chord", "planarity", "notch_spacing", "quantity")
+_POSITIVE: Final = (
+    "tolerance",
+    "max_chord",
+    "planarity",
+    "notch_spacing",
+    "quantity",
+    "mitre_limit",
+)
 _NOT_NEGATIVE: Final = (
     "margin",
     "fade",
@@ -49,6 +57,7 @@ _VECTORS: Final = {
     "grain": 3,
     "stretch": 3,
 }
+_LISTS: Final = ("notch_at_p", "notch_at_q")
 _ONE_FOR_ALL: Final = ("waves", "height", "phase_deg", "seam_allowance", "lasting_margin")
 """Of these one number stands for all of its parts."""
 _KINDS: Final[dict[str, tuple[type, ...]]] = {
@@ -128,6 +137,16 @@ class Job:
     """Pairs of notches on each long seam, at equal distances."""
     notch_spacing: float | None = None
     """Distance of the notches instead of their number."""
+    notch_at_p: tuple[float, ...] = ()
+    """Positions of the notches on P instead, mm of seam from its start."""
+    notch_at_q: tuple[float, ...] = ()
+    """Likewise on Q."""
+    notch_kind: str = "slit"
+    """``slit``, ``v``, ``t``, ``castle``, ``check`` or ``u``."""
+    drill_holes: tuple[tuple[float, float], ...] = ()
+    """(along, across) as shares 0 to 1 of the rails and of the way from P to Q."""
+    mitre_limit: float = settings.MITRE_LIMIT
+    """Corners of the allowance reach at most this many widths out."""
     thickness: float | None = None
     """Of the material; lengths are taken at its neutral layer. The material's own when None."""
     surface_side: str = "middle"
@@ -179,6 +198,10 @@ class Job:
         for field, count in _VECTORS.items():
             value = _vector(field, getattr(self, field), count)
             object.__setattr__(self, field, value)
+        for field in _LISTS:
+            object.__setattr__(self, field, _numbers(field, getattr(self, field)))
+        holes = tuple(_vector("drill_holes", hole, 2) for hole in self.drill_holes)
+        object.__setattr__(self, "drill_holes", holes)
         object.__setattr__(self, "name", self.name or _stem_of(self.input))
         _check_name(self.name)
         for field, choices in _CHOICES.items():
@@ -255,17 +278,23 @@ def _vector(field: str, value: Any, count: int) -> tuple[float, ...] | None:
         return None
     if isinstance(value, int | float):
         value = (value,)
-    if not isinstance(value, list | tuple):
-        raise JobError(f"{field} - {value!r} - {count} numbers")
-    numbers = tuple(value) * count if len(value) == 1 and field in _ONE_FOR_ALL else tuple(value)
+    numbers = _numbers(field, value)
+    if len(numbers) == 1 and field in _ONE_FOR_ALL:
+        numbers *= count
     if len(numbers) != count:
         raise JobError(f"{field} - {len(numbers)} numbers - {count}")
-    for number in numbers:
+    return numbers
+
+
+def _numbers(field: str, value: Any) -> tuple[float, ...]:
+    if not isinstance(value, list | tuple):
+        raise JobError(f"{field} - {value!r} - a list of numbers")
+    for number in value:
         if isinstance(number, bool) or not isinstance(number, int | float):
             raise JobError(f"{field} - {number!r} - a number")
         if not math.isfinite(number):
             raise JobError(f"{field} - {number} - a finite number")
-    return tuple(float(number) for number in numbers)
+    return tuple(float(number) for number in value)
 
 
 def _check_known(table: Mapping[str, Any], source: str) -> None:

@@ -79,6 +79,18 @@ def _add_piece_arguments(add: Callable[..., Any]) -> None:
     add("--lasting-margin", type=_numbers, metavar="P,Q,START,END", help="added widths in mm (0)")
     add("--notches", type=int, metavar="N", help="pairs of notches on each long seam (0)")
     add("--notch-spacing", type=float, metavar="MM", help="their distance instead, in mm")
+    add("--notch-at-p", type=_numbers, metavar="MM,MM", help="positions on P instead, in mm")
+    add("--notch-at-q", type=_numbers, metavar="MM,MM", help="positions on Q instead, in mm")
+    add("--notch-kind", choices=("slit", "v", "t", "castle", "check", "u"), help="(slit)")
+    add(
+        "--drill-hole",
+        dest="drill_holes",
+        action="append",
+        type=_numbers,
+        metavar="ALONG,ACROSS",
+        help="a hole at shares 0 to 1 of the rails and of the way from P to Q; repeatable",
+    )
+    add("--mitre-limit", type=float, metavar="N", help=f"in widths ({settings.MITRE_LIMIT:g})")
     add("--thickness", type=float, metavar="MM", help="of the material in mm (the material's)")
     add("--surface-side", choices=("inside", "middle", "outside"), help="of the material (middle)")
     add("--hand", choices=("left", "right"), help="the strip's foot; adds the mirrored twin")

@@ -84,13 +84,20 @@ def piece_settings_of(job: Job, limits: Limits) -> PieceSettings:
     """
     from .pattern.options import NotchRule, PieceSettings
 
-    notches = NotchRule(count=job.notches, spacing=job.notch_spacing)
+    def rule(at: tuple[float, ...]) -> NotchRule:
+        if at:
+            return NotchRule(at=at)
+        return NotchRule(count=job.notches, spacing=job.notch_spacing)
+
     options: dict[str, Any] = {
         name: getattr(job, name)
         for name in (
             "tolerance",
             "seam_allowance",
             "lasting_margin",
+            "notch_kind",
+            "drill_holes",
+            "mitre_limit",
             "surface_side",
             "hand",
             "size",
@@ -103,8 +110,8 @@ def piece_settings_of(job: Job, limits: Limits) -> PieceSettings:
     }
     return PieceSettings(
         **options,
-        notches_p=notches,
-        notches_q=notches,
+        notches_p=rule(job.notch_at_p),
+        notches_q=rule(job.notch_at_q),
         thickness=limits.thickness_mm if job.thickness is None else job.thickness,
         material=limits.material,
         grain="along" if job.grain is None else job.grain,
