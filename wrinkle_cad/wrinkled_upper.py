@@ -124,6 +124,11 @@ def _carved(job: Job, body: object, given: StripInput) -> Opening:
 
 def _profiles(job: Job, opening: Opening, given: StripInput) -> tuple[object, object]:
     if job.waves is None or job.height is None:
+        if opening.request.margin == 0.0 and max(opening.distances) <= job.tolerance:
+            # Rails that lie on the upper within the tolerance are the opening's own boundary.
+            from .cad.bands import side_curve
+
+            return side_curve(opening.p_edges, "P"), side_curve(opening.q_edges, "Q")
         return given.p.shape, given.q.shape
     from .cad.profiles import profile_curves
 

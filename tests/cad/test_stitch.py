@@ -30,9 +30,10 @@ from tests.cad.stitch_checks import (
     stl_faults,
 )
 from wrinkle_cad.cad import kernel
+from wrinkle_cad.cad.bands import _distances
 from wrinkle_cad.cad.border import joined_faces
 from wrinkle_cad.cad.carve import carve
-from wrinkle_cad.cad.directrix import Directrix
+from wrinkle_cad.cad.directrix import Directrix, make_directrix
 from wrinkle_cad.cad.opening import Opening
 from wrinkle_cad.cad.profiles import profile_curves
 from wrinkle_cad.cad.projection import UpperFaces

@@ -68,6 +68,17 @@ def test_an_example_runs_and_its_shell_is_sound(name: str, tmp_path: Path) -> No
     )
 
 
+@pytest.mark.parametrize("name", ["one_wrinkle", "feather_to_feather"])
+def test_without_waves_the_rails_on_the_upper_are_sewn_directly(name: str, tmp_path: Path) -> None:
+    step = FOLDER / name / f"{name}.step"
+    outcome = run_job(make_job(step, {"output_dir": tmp_path, "allow_split": True}))
+    assert isinstance(outcome, JobDone), outcome
+    assert [strip["name"] for strip in outcome.summary["strips"]] == [name]
+    (upper,) = read_cad(step).surfaces()
+    faces = outcome.summary["stitch"]["faces"]
+    assert shell_faults(reread(tmp_path / f"{name}.step"), faces, upper.shape) == []
+
+
 @pytest.mark.freecad
 def test_freecad_reads_every_example(freecadcmd: str, tmp_path: Path) -> None:
     paths, expected = [], []

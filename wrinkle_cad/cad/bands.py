@@ -148,13 +148,18 @@ def _distances(points: Floats, side: Directrix) -> Floats:
     line = side.point_at(parameters)
     chord = np.diff(line, axis=0)
     square = np.maximum((chord**2).sum(axis=1), np.finfo(np.float64).tiny)
-    feet = np.empty(len(points))
+    feet, speeds = np.empty(len(points)), np.empty(len(points))
     for i, point in enumerate(points):
         share = np.clip(((point - line[:-1]) * chord).sum(axis=1) / square, 0.0, 1.0)
         off = line[:-1] + share[:, None] * chord - point
         nearest = int((off * off).sum(axis=1).argmin())
         step = parameters[nearest + 1] - parameters[nearest]
         feet[i] = parameters[nearest] + share[nearest] * step
+        speeds[i] = np.sqrt(square[nearest]) / step
+    for _ in range(2):
+        # A foot on the chord is off along the curve where the curve's speed varies.
+        along = ((points - side.point_at(feet)) * side.tangent_at(feet)).sum(axis=1)
+        feet = np.clip(feet + along / speeds, *side.interval)
     gaps: Floats = np.linalg.norm(side.point_at(feet) - points, axis=1)
     return gaps
 
