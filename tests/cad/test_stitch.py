@@ -333,6 +333,15 @@ def test_faces_that_are_not_one_shell_are_refused(monkeypatch: pytest.MonkeyPatc
         stitched(opening())
 
 
+def test_the_width_of_a_band_is_measured_exactly_on_a_curve_of_uneven_speed() -> None:
+    share = np.linspace(0.0, 1.0, 41) ** 3
+    side = make_directrix(smooth_edge(np.column_stack((share * 100, share * 0, share * 0))))
+    points = np.column_stack((np.linspace(0.0, 100.0, 77), np.full(77, 3.0), np.full(77, 4.0)))
+    assert np.allclose(_distances(points, side), 5.0, atol=1e-9)
+    on_curve = side.point_at(np.linspace(*side.interval, 77))
+    assert _distances(on_curve, side).max() < 1e-9
+
+
 def shot(
     shape: TopoDS_Shape, rays: list[tuple[tuple[float, ...], tuple[float, ...]]]
 ) -> TopoDS_Edge:

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import importlib
 import json
+from collections.abc import Callable
+from functools import cache
 from pathlib import Path
 
 import numpy as np
@@ -21,16 +23,24 @@ from wrinkle_cad.outcome import JobDone
 from wrinkle_cad.workflow import run_job
 
 FOLDER = Path(__file__).parents[2] / "shoe_examples"
+OUTPUTS = {".step", ".stl", ".dxf", ".json", ".html"}
 EXAMPLES = ("one_wrinkle", "three_wrinkles", "across_seam", "feather_to_feather")
 
 
-def run(name: str, output_dir: Path) -> JobDone:
-    job = make_job(
-        FOLDER / name / f"{name}.step", {"output_dir": output_dir}, FOLDER / name / "job.toml"
-    )
-    outcome = run_job(job)
-    assert isinstance(outcome, JobDone), outcome
-    return outcome
+@pytest.fixture(scope="module")
+def folder_of(tmp_path_factory: pytest.TempPathFactory) -> Callable[[str], Path]:
+    """Runs an example when it is first asked for; returns the folder with its outputs."""
+
+    @cache
+    def run(name: str) -> Path:
+        folder = tmp_path_factory.mktemp(name)
+        keywords, toml = {"output_dir": folder}, FOLDER / name / "job.toml"
+        outcome = run_job(make_job(FOLDER / name / f"{name}.step", keywords, toml))
+        assert isinstance(outcome, JobDone), outcome
+        assert {path.suffix for path in outcome.outputs} >= OUTPUTS
+        return folder
+
+    return run
 
 
 def test_the_upper_is_a_last_of_size_42() -> None:
@@ -53,12 +63,13 @@ def test_the_instep_girth_is_that_of_size_42() -> None:
 
 
 @pytest.mark.parametrize("name", EXAMPLES)
-def test_an_example_runs_and_its_shell_is_sound(name: str, tmp_path: Path) -> None:
-    done = run(name, tmp_path)
-    assert {path.suffix for path in done.outputs} >= {".step", ".stl", ".dxf", ".json", ".html"}
+def test_an_example_runs_and_its_shell_is_sound(
+    name: str, folder_of: Callable[[str], Path]
+) -> None:
+    folder = folder_of(name)
     (upper,) = read_cad(FOLDER / name / f"{name}.step").surfaces()
-    report = json.loads((tmp_path / f"{name}.json").read_text(encoding="utf-8"))["stitch"]
-    shell = reread(tmp_path / f"{name}.step")
+    report = json.loads((folder / f"{name}.json").read_text(encoding="utf-8"))["stitch"]
+    shell = reread(folder / f"{name}.step")
     assert shell_faults(shell, report["faces"], upper.shape) == []
     assert report["is_valid"]
     assert report["max_edge_tolerance_mm"] <= 1e-3
@@ -80,12 +91,13 @@ def test_without_waves_the_rails_on_the_upper_are_sewn_directly(name: str, tmp_p
 
 
 @pytest.mark.freecad
-def test_freecad_reads_every_example(freecadcmd: str, tmp_path: Path) -> None:
+def test_freecad_reads_every_example(
+    freecadcmd: str, tmp_path: Path, folder_of: Callable[[str], Path]
+) -> None:
     paths, expected = [], []
     for name in EXAMPLES:
-        run(name, tmp_path / name)
-        paths.append(tmp_path / name / f"{name}.step")
-        summary = (tmp_path / name / f"{name}.json").read_text(encoding="utf-8")
+        paths.append(folder_of(name) / f"{name}.step")
+        summary = paths[-1].with_suffix(".json").read_text(encoding="utf-8")
         report = json.loads(summary)["stitch"]
         expected.append(f"1 {report['faces']} True {round(report['free_length_before_mm'], 2)}")
     assert freecad_report(freecadcmd, paths, tmp_path) == expected
