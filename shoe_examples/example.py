@@ -36,6 +36,28 @@ def draw_result(folder: Path) -> None:
     draw(parts, folder / "picture.png")
 
 
+def draw_pattern(folder: Path) -> None:
+    """Writes pattern.png: the wrinkle's piece and its bands', with allowance and notches."""
+    import matplotlib as mpl
+
+    mpl.use("Agg")
+    import matplotlib.pyplot as plt
+
+    from wrinkle_cad import PieceSettings
+    from wrinkle_cad.cut_pattern import pattern_of_strips
+    from wrinkle_cad.pattern.options import NotchRule
+    from wrinkle_cad.report.figures import plot_pattern
+
+    result = stitched_upper(folder)
+    rule = NotchRule(count=5)
+    wanted = PieceSettings(seam_allowance=(4.0,) * 4, notches_p=rule, notches_q=rule)
+    pattern = pattern_of_strips([*result.strips, *result.bands], wanted)
+    figure, axes = plt.subplots(figsize=(14.0, 5.6), dpi=90, layout="constrained")
+    plot_pattern(axes, pattern.pieces)
+    figure.savefig(folder / "pattern.png")
+    plt.close(figure)
+
+
 def main(folder: Path, parts: Sequence[Part]) -> None:
     """Writes the input of an example; with ``--picture`` draws what its job makes of it."""
     step = folder / f"{folder.name}.step"
@@ -43,3 +65,4 @@ def main(folder: Path, parts: Sequence[Part]) -> None:
     print(f"{step.name}: {', '.join(part.name for part in parts)}")
     if "--picture" in sys.argv:
         draw_result(folder)
+        draw_pattern(folder)

@@ -109,6 +109,9 @@ CONFUSION: Final = 1e-7
 LENGTH_ERROR: Final = 1e-9
 """mm; how exactly the CAD kernel integrates the length of an edge."""
 
+AREA_RELATIVE_ERRORS: Final = (1e-8, 1e-6, 1e-4, 1e-2)
+"""Tried in turn for the area in a strip's report; a finding tells when it is not the first."""
+
 AREA_RELATIVE_ERROR: Final = 1e-8
 """How exactly the CAD kernel integrates the area of a face; its own default is some 1e-5."""
 

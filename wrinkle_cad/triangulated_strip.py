@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -10,7 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import settings
-from .errors import InputError
+from .errors import CadError, InputError
 from .findings import Finding
 from .strip.convexity import validity_matrix
 from .strip.gaps import find_gaps
@@ -172,19 +173,40 @@ class TriangulatedStrip:
     @cached_property
     def report(self) -> StripReport:
         """The strip's numbers."""
-        from .cad.kernel import area_of, faces_of
+        from .cad.kernel import faces_of
 
         return report_on(
             self.name,
             self.triangulation,
             self.unrolling,
             role=self.role,
-            area_mm2=area_of(self.topods_shell()),
+            area_mm2=self.area_mm2,
             face_count=len(faces_of(self.topods_shell())),
             lengths_mm=self._rail_lengths(),
             least_bending=self.least_bending.bending,
             gaps=find_gaps(self.triangulation),
         )
+
+    @property
+    def area_mm2(self) -> float:
+        """Area of the surface in space."""
+        return self._measured_area[0]
+
+    @property
+    def area_error(self) -> float:
+        """The relative error to which the area was integrated."""
+        return self._measured_area[1]
+
+    @cached_property
+    def _measured_area(self) -> tuple[float, float]:
+        """The area as exactly as it can be had: a sound strip does not fail for its last digits."""
+        from .cad.kernel import area_of
+
+        *tried, coarsest = settings.AREA_RELATIVE_ERRORS
+        for error in tried:
+            with contextlib.suppress(CadError):
+                return area_of(self.topods_shell(), relative_error=error), error
+        return area_of(self.topods_shell(), relative_error=coarsest), coarsest
 
     def _rail_lengths(self) -> tuple[float, float]:
         if self.surface == "cones":

@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
+from . import settings
 from .cad.loading import kernel_importable
 from .errors import JobError, WrinkleError
 from .findings import Finding
@@ -140,6 +141,14 @@ def _judged(job: Job, file: CadFile, chosen: Chosen, made: Made) -> dict[str, An
 def findings_on(strip: TriangulatedStrip, report: StripReport) -> Iterator[Finding]:
     """What the user should know about a strip."""
     yield from strip.findings
+    if strip.area_error > settings.AREA_RELATIVE_ERROR:
+        yield Finding(
+            "area-uncertain",
+            "warning",
+            f"{report.name} - two integrations of its area differ by up to"
+            f" {strip.area_error:.0e} of it - {settings.AREA_RELATIVE_ERROR:.0e} in a smooth strip -"
+            " look for kinks in its rails",
+        )
     invalid = report.invalid_bridges - report.inflection_bridges
     if invalid:
         yield Finding(

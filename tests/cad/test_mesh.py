@@ -8,7 +8,7 @@ import pytest
 import trimesh
 
 from wrinkle_cad import WrinkleStrip
-from wrinkle_cad.cad.mesh import mesh_of, without_collapsed
+from wrinkle_cad.cad.mesh import binary_stl, mesh_of
 from wrinkle_cad.cad.write import stl_bytes
 
 
@@ -67,14 +67,10 @@ def test_a_strip_of_cones_is_one_clean_sheet_in_stl(strip: WrinkleStrip) -> None
     assert mesh.area == pytest.approx(strip.report.area_3d_mm2, rel=1e-3)
 
 
-def test_collapsed_triangles_are_dropped_and_no_others() -> None:
-    kind = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("tag", "<u2")])
-    triangles = np.zeros(3, dtype=kind)
-    triangles["corners"][0] = [[0, 0, 0], [1, 0, 0], [0, 1, 0]]
-    triangles["corners"][1] = [[1, 1, 1], [2, 2, 2], [1, 1, 1]]
-    triangles["corners"][2] = [[0, 0, 0], [1, 0, 0], [0, 0, 1]]
-    head = b"x" * 80 + np.array(3, dtype="<u4").tobytes()
-    kept = without_collapsed(head + triangles.tobytes())
-    assert kept[:80] == b"x" * 80
-    assert np.frombuffer(kept[80:84], dtype="<u4")[0] == 2
-    assert kept[84:] == triangles[[0, 2]].tobytes()
+def test_collapsed_triangles_are_left_out_and_no_others() -> None:
+    points = np.array([[0.0, 0, 0], [1, 0, 0], [0, 1, 0], [1.0 + 1e-12, 0, 0]])
+    stl = binary_stl(points, np.array([[0, 1, 2], [1, 3, 2], [1, 2, 0]]))
+    assert len(stl) == 84 + 2 * 50
+    mesh = trimesh.load(io.BytesIO(stl), file_type="stl", process=False)
+    assert mesh.triangles == pytest.approx(points[[[0, 1, 2], [1, 2, 0]]])
+    assert mesh.face_normals == pytest.approx(np.array([[0, 0, 1.0], [0, 0, 1]]))

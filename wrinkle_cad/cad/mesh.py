@@ -18,7 +18,7 @@ from wrinkle_cad import settings
 
 from .kernel import faces_of, kernel_step
 
-_STL_HEAD: Final = 84
+_STL_HEADER: Final = b"wrinkle_cad, millimetres"
 _STL_TRIANGLE: Final = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("tag", "<u2")])
 
 Floats = NDArray[np.float64]
@@ -77,14 +77,24 @@ def meshed_copy(shape: TopoDS_Shape, tolerance: float, angular_tolerance: float)
     return own
 
 
-def without_collapsed(stl: bytes) -> bytes:
-    """Returns a binary STL file without triangles of which two corners are the same point.
+def binary_stl(points: Floats, triangles: Indices) -> bytes:
+    """Returns a binary STL file.
 
-    The mesher makes one at the apex of every cone; to a slicer each is an open border.
+    Triangles of which two corners are the same point in single precision are left out: the mesher
+    makes one at the apex of every cone, and to a slicer each is an open border.
+
+    Args:
+        points: (k, 3) float64, mm.
+        triangles: (l, 3) int64 into them, counter-clockwise seen from the outside.
     """
-    triangles = np.frombuffer(stl, dtype=_STL_TRIANGLE, offset=_STL_HEAD)
-    corners = triangles["corners"]
+    corners = points[triangles].astype("<f4")
     same = (corners == np.roll(corners, 1, axis=1)).all(axis=2).any(axis=1)
-    kept = triangles[~same]
-    count = np.array(len(kept), dtype="<u4").tobytes()
-    return b"".join((stl[: _STL_HEAD - len(count)], count, kept.tobytes()))
+    corners = corners[~same]
+    sides = np.diff(corners.astype(np.float64), axis=1)
+    normals = np.cross(sides[:, 0], sides[:, 1])
+    lengths = np.linalg.norm(normals, axis=1, keepdims=True)
+    records = np.zeros(len(corners), dtype=_STL_TRIANGLE)
+    records["corners"] = corners
+    records["normal"] = np.divide(normals, lengths, out=np.zeros_like(normals), where=lengths > 0.0)
+    count = np.array(len(records), dtype="<u4").tobytes()
+    return b"".join((_STL_HEADER.ljust(80), count, records.tobytes()))

@@ -7,7 +7,6 @@ has to resolve an assembly. The file appears under its final name only when it i
 from __future__ import annotations
 
 import io
-import tempfile
 from collections.abc import Sequence
 from dataclasses import replace
 from datetime import datetime
@@ -19,7 +18,6 @@ from OCP.BRepTools import BRepTools
 from OCP.IFSelect import IFSelect_RetDone
 from OCP.STEPCAFControl import STEPCAFControl_Writer
 from OCP.STEPControl import STEPControl_AsIs
-from OCP.StlAPI import StlAPI_Writer
 from OCP.TopAbs import TopAbs_FACE
 from OCP.TopExp import TopExp
 from OCP.TopLoc import TopLoc_Location
@@ -32,7 +30,7 @@ from wrinkle_cad.errors import CadError, ExportError
 
 from .face_styles import carried_over, styles_in
 from .kernel import faces_of, kernel_step
-from .mesh import meshed_copy, without_collapsed
+from .mesh import binary_stl, mesh_of
 from .shape_index import ShapeIndex
 from .shapes import Part
 from .step_bytes import Header, face_placeholder, finished_text, placeholder
@@ -228,15 +226,10 @@ def stl_bytes(
     if not faces_of(shape):
         raise CadError("mesh the shape", "it has no faces - pass a face, shell or solid")
     silence_kernel()
-    with kernel_step("mesh the shape"):
-        own = meshed_copy(shape, tolerance, angular_tolerance)
-        writer = StlAPI_Writer()
-        writer.ASCIIMode = False
-        with tempfile.TemporaryDirectory(prefix="wrinkle-cad-") as folder:
-            copy = Path(folder, "shape.stl")
-            if not writer.Write(own, str(copy)):
-                raise CadError("mesh the shape", "the CAD kernel made no triangles")
-            return without_collapsed(copy.read_bytes())
+    points, triangles = mesh_of(shape, tolerance=tolerance, angular_tolerance=angular_tolerance)
+    if not len(triangles):
+        raise CadError("mesh the shape", "the CAD kernel made no triangles - check the shape")
+    return binary_stl(points, triangles)
 
 
 def brep_bytes(shape: TopoDS_Shape) -> bytes:
