@@ -1,6 +1,7 @@
 from __future__ import annotations
 
 import json
+from itertools import combinations
 from pathlib import Path
 
 import pytest
@@ -118,7 +119,7 @@ def test_each_bad_file_fails_with_its_own_cause(realdata: Path, tmp_path: Path) 
 
 PAIRS = [
     ("bellyfairing_guides.brep", "1", "2"),
-    *(("nacelle_guides.brep", str(i), str(j)) for i, j in ((1, 2), (2, 3), (3, 4), (4, 1), (1, 3), (2, 4))),
+    *(("nacelle_guides.brep", str(i), str(j)) for i, j in combinations(range(1, 5), 2)),
     ("spiralwing_guides.brep", "1", "2"),
     ("spiralwing_guides.brep", "2", "3"),
 ]

@@ -146,8 +146,8 @@ def findings_on(strip: TriangulatedStrip, report: StripReport) -> Iterator[Findi
             "area-uncertain",
             "warning",
             f"{report.name} - two integrations of its area differ by up to"
-            f" {strip.area_error:.0e} of it - {settings.AREA_RELATIVE_ERROR:.0e} in a smooth strip -"
-            " look for kinks in its rails",
+            f" {strip.area_error:.0e} of it - {settings.AREA_RELATIVE_ERROR:.0e} in a smooth strip"
+            " - look for kinks in its rails",
         )
     invalid = report.invalid_bridges - report.inflection_bridges
     if invalid:
