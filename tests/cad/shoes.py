@@ -98,7 +98,8 @@ def variation(seed: int) -> Variation:
     random = np.random.default_rng(seed)
     width = random.uniform(8.0, 35.0)
     middle = min(random.uniform(165.0, 225.0), 232.0 - width / 2)
-    skews = random.uniform(-10.0, 10.0, 2)
+    # Turned further against each other, narrow strips would cross.
+    skews = random.uniform(-1.0, 1.0, 2) * min(10.0, 0.35 * width)
     reach = (-random.uniform(30.0, 68.0), random.uniform(30.0, 68.0))
     apart = random.uniform(-4.0, 4.0, 2)
     side = ("out", "both", "in")[random.integers(3)]

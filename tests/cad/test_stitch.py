@@ -12,6 +12,7 @@ from OCP.IntCurvesFace import IntCurvesFace_ShapeIntersector
 from OCP.TopoDS import TopoDS_Edge, TopoDS_Shape
 
 from shoe_examples.rails import feather_rail, vamp_rail
+from shoe_examples.upper import upper_surface
 from tests.cad.shoes import (
     gaping_panels,
     lens_rail,
@@ -222,6 +223,44 @@ def test_a_strip_from_feather_edge_to_feather_edge_keeps_the_border(tmp_path: Pa
     )
     assert step_faults(whole, shoe(), tmp_path) == []
     assert stl_faults(whole, shoe(), tmp_path) == []
+
+
+@pytest.mark.parametrize(
+    ("where", "expected_ends"),
+    [
+        ("across the face's own seam at the heel", (False, False)),
+        ("from feather edge to collar", (True, True)),
+        ("from the feather edge up the side", (True, False)),
+    ],
+)
+def test_a_strip_anywhere_on_the_upper(
+    where: str, expected_ends: tuple[bool, bool], tmp_path: Path
+) -> None:
+    share = np.linspace(0.0, 1.0, 61)
+    p_places, q_places = {
+        "across the face's own seam at the heel": (
+            (18.0 + 4.0 * share, np.full(61, 0.35)),
+            (18.0 + 4.0 * share, np.full(61, 0.6)),
+        ),
+        "from feather edge to collar": ((14.0 + 0.3 * share, share), (14.8 + 0.5 * share, share)),
+        "from the feather edge up the side": (
+            (14.0 + 0.3 * share, 0.7 * share),
+            (14.8 + 0.5 * share, 0.7 * share),
+        ),
+    }[where]
+    carved = carve(shoe(), rail_at(*p_places), rail_at(*q_places), margin=2.0)
+    assert carved.ends_on_border == expected_ends
+    whole = stitched(carved, height=1.5)
+    assert shell_faults(whole.shell_shape, whole.report.face_count, shoe()) == []
+    assert whole.report.max_edge_tolerance_mm <= 1e-3
+    assert step_faults(whole, shoe(), tmp_path) == []
+
+
+def rail_at(stations: np.ndarray, shares: np.ndarray) -> TopoDS_Edge:
+    """A curve at (k,) sections around the last and (k,) shares of the way up to the collar."""
+    surface = upper_surface()
+    places = [surface.Value(u % 20.0, v) for u, v in zip(stations, shares, strict=True)]
+    return smooth_edge(np.array([(at.X(), at.Y(), at.Z()) for at in places]))
 
 
 def test_a_gap_between_faces_is_crossed_and_only_its_width_stays_open() -> None:
