@@ -397,7 +397,12 @@ def shot(
 
 
 def check_real(
-    upper: TopoDS_Shape, p: TopoDS_Edge, q: TopoDS_Edge, size: float, tmp_path: Path
+    upper: TopoDS_Shape,
+    p: TopoDS_Edge,
+    q: TopoDS_Edge,
+    size: float,
+    tmp_path: Path,
+    freecadcmd: str,
 ) -> Opening:
     carved = carve(upper, p, q, margin=0.006 * size)
     whole = stitched(carved, height=0.004 * size)
@@ -405,11 +410,18 @@ def check_real(
     assert whole.report.max_edge_tolerance_mm <= 1e-6 * size
     assert step_faults(whole, upper, tmp_path) == []
     assert stl_faults(whole, upper, tmp_path, tolerance=1e-4 * size) == []
+    path = tmp_path / "real.step"
+    write_step(path, [Part(whole.shell_shape, "upper")])
+    (seen,) = freecad_report(freecadcmd, [path], tmp_path)
+    assert seen.split()[:3] == ["1", str(whole.report.face_count), "True"]
     return carved
 
 
 @pytest.mark.realdata
-def test_a_ship_hull_is_carved_and_stitched(realdata: Path, tmp_path: Path) -> None:
+@pytest.mark.freecad
+def test_a_ship_hull_is_carved_and_stitched(
+    realdata: Path, tmp_path: Path, freecadcmd: str
+) -> None:
     (hull,) = read_cad(realdata / "wigley_hull.step").surfaces()
 
     def rail(z: float) -> TopoDS_Edge:
@@ -418,11 +430,14 @@ def test_a_ship_hull_is_carved_and_stitched(realdata: Path, tmp_path: Path) -> N
             [((float(x), 1e3, z), (0.0, -1.0, 0.0)) for x in np.linspace(-500.0, 500.0, 61)],
         )
 
-    check_real(hull.shape, rail(40.0), rail(-40.0), 2500.0, tmp_path)
+    check_real(hull.shape, rail(40.0), rail(-40.0), 2500.0, tmp_path, freecadcmd)
 
 
 @pytest.mark.realdata
-def test_a_wing_is_carved_across_two_faces_and_stitched(realdata: Path, tmp_path: Path) -> None:
+@pytest.mark.freecad
+def test_a_wing_is_carved_across_two_faces_and_stitched(
+    realdata: Path, tmp_path: Path, freecadcmd: str
+) -> None:
     wing = max(read_cad(realdata / "wing_with_guides.igs").surfaces(), key=lambda s: s.measure)
 
     def rail(offset: float) -> TopoDS_Edge:
@@ -434,7 +449,7 @@ def test_a_wing_is_carved_across_two_faces_and_stitched(realdata: Path, tmp_path
             ],
         )
 
-    carved = check_real(wing.shape, rail(0.0), rail(300.0), 17000.0, tmp_path)
+    carved = check_real(wing.shape, rail(0.0), rail(300.0), 17000.0, tmp_path, freecadcmd)
     assert len(carved.p_edges) == len(carved.q_edges) == 2
 
 
