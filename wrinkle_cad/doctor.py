@@ -131,7 +131,7 @@ def diagnose_cache(folders: tuple[Path, ...]) -> Diagnosis:
             return Diagnosis("compile cache", True, str(folder))
     advice = (
         f"no writable folder among {', '.join(str(folder) for folder in folders)} - every start "
-        "compiles anew, some 10 s - set NUMBA_CACHE_DIR to a writable folder"
+        "compiles anew, up to a minute - set NUMBA_CACHE_DIR to a writable folder"
     )
     return Diagnosis("compile cache", False, advice)
 
