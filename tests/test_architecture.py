@@ -127,7 +127,7 @@ def test_importing_the_package_loads_no_cad_kernel() -> None:
         "heavy &= set(sys.modules)\n"
         "assert not heavy, heavy"
     )
-    subprocess.run([sys.executable, "-c", code], check=True)
+    assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0
 
 
 def test_every_public_name_can_be_had() -> None:

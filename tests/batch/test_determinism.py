@@ -97,7 +97,9 @@ def command(inputs: Sequence[Path], folder: Path) -> list[str]:
     return [sys.executable, "-m", "wrinkle_cad", "batch", *paths, "-o", str(folder)]
 
 
-def in_fresh_processes(inputs: Path, reference: dict[str, bytes], folder: Path, count: int) -> None:
+def check_in_fresh_processes(
+    inputs: Path, reference: dict[str, bytes], folder: Path, count: int
+) -> None:
     for number in range(count):
         target = folder / str(number)
         environment = {"SOURCE_DATE_EPOCH": str(EPOCH), "PYTHONHASHSEED": str(number), "PATH": ""}
@@ -113,17 +115,17 @@ def in_fresh_processes(inputs: Path, reference: dict[str, bytes], folder: Path, 
 def test_a_fresh_process_makes_the_same(
     inputs: Path, reference: dict[str, bytes], tmp_path: Path
 ) -> None:
-    in_fresh_processes(inputs, reference, tmp_path, 1)
+    check_in_fresh_processes(inputs, reference, tmp_path, 1)
 
 
 @pytest.mark.slow
 def test_ten_fresh_processes_make_the_same(
     inputs: Path, reference: dict[str, bytes], tmp_path: Path
 ) -> None:
-    in_fresh_processes(inputs, reference, tmp_path, 10)
+    check_in_fresh_processes(inputs, reference, tmp_path, 10)
 
 
-def kill_and_resume(
+def check_kill_and_resume(
     inputs: Path, reference: dict[str, bytes], folder: Path, moments: Sequence[float]
 ) -> None:
     environment = {"SOURCE_DATE_EPOCH": str(EPOCH), "PATH": ""}
@@ -154,7 +156,7 @@ def test_a_killed_and_resumed_batch_makes_the_same(
     inputs: Path, reference: dict[str, bytes], tmp_path: Path
 ) -> None:
     # About when the first file is written; the long form takes every moment.
-    kill_and_resume(inputs, reference, tmp_path, [4.0])
+    check_kill_and_resume(inputs, reference, tmp_path, [4.0])
 
 
 @pytest.mark.slow
@@ -162,4 +164,6 @@ def test_a_batch_killed_at_twenty_moments_makes_the_same(
     inputs: Path, reference: dict[str, bytes], tmp_path: Path
 ) -> None:
     moments = random.Random(6)
-    kill_and_resume(inputs, reference, tmp_path, [moments.uniform(0.2, 6.0) for _ in range(20)])
+    check_kill_and_resume(
+        inputs, reference, tmp_path, [moments.uniform(0.2, 6.0) for _ in range(20)]
+    )

@@ -58,7 +58,7 @@ def assert_all_whole(bench: Bench) -> int:
     )
 
 
-def kill_and_resume(bench: Bench, seed: int, times: int) -> None:
+def check_kill_and_resume(bench: Bench, seed: int, times: int) -> None:
     bench.put(**{f"f{number:02d}": str(number) for number in range(FILES)})
     moments = random.Random(seed)
     for number in range(times):
@@ -79,13 +79,13 @@ def kill_and_resume(bench: Bench, seed: int, times: int) -> None:
 
 
 def test_a_batch_killed_at_random_moments_resumes(bench: Bench) -> None:
-    kill_and_resume(bench, seed=1, times=5)
+    check_kill_and_resume(bench, seed=1, times=5)
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("seed", range(2, 5))
 def test_a_batch_killed_at_twenty_random_moments_resumes(bench: Bench, seed: int) -> None:
-    kill_and_resume(bench, seed, times=20)
+    check_kill_and_resume(bench, seed, times=20)
 
 
 @pytest.mark.parametrize("action", ["hang@read", "hold@write"])

@@ -60,7 +60,8 @@ def test_twenty_five_million_bridges(benchmark) -> None:
 def test_the_local_search(benchmark) -> None:
     strip = wavy_strip(1000)
     triangulate(*strip, search="local")
-    benchmark(triangulate, *strip, search="local")
+    found = benchmark(triangulate, *strip, search="local")
+    assert found.search == "local"
 
 
 @pytest.mark.benchmark(group="search")

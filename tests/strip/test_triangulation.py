@@ -272,4 +272,4 @@ def test_importing_the_folder_loads_neither_numba_nor_a_cad_kernel() -> None:
         "assert all(getattr(strip, name) is not None for name in strip.__all__)\n"
         "assert 'OCP' not in sys.modules"
     )
-    subprocess.run([sys.executable, "-c", code], check=True)
+    assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0
