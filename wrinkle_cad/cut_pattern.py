@@ -14,33 +14,16 @@ from .pattern.making import make_pieces, rail_corners
 from .pattern.nesting import laid_out
 from .pattern.options import NotchRule, PieceSettings
 from .pattern.piece import PatternPiece
+from .strip.sampled_strip import SampledStrip
 
 if TYPE_CHECKING:
     from .pattern.contours import Curves
     from .pattern.dxf import DxfVersion
-    from .strip.sampling import Samples
-    from .strip.triangulation import Triangulation
     from .strip.unrolling import Unrolling
 
 
-class FlatStrip(Protocol):
+class FlatStrip(SampledStrip, Protocol):
     """What a pattern needs of a strip."""
-
-    @property
-    def name(self) -> str:
-        """What its pieces are called."""
-
-    @property
-    def p_samples(self) -> Samples:
-        """The samples of its rail P; a strip sewn to that rail has the same object."""
-
-    @property
-    def q_samples(self) -> Samples:
-        """The samples of its rail Q."""
-
-    @property
-    def triangulation(self) -> Triangulation:
-        """The strip in space."""
 
     @property
     def unrolling(self) -> Unrolling:

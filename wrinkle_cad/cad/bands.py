@@ -18,6 +18,7 @@ from OCP.TopoDS import TopoDS_Edge, TopoDS_Shell
 
 from wrinkle_cad import settings
 from wrinkle_cad.errors import InputError
+from wrinkle_cad.strip.sampled_strip import SampledStrip
 from wrinkle_cad.strip.sampling import Samples
 from wrinkle_cad.strip.triangulation import Triangulation, triangulate
 
@@ -29,12 +30,8 @@ from .opening import Opening
 Floats = NDArray[np.float64]
 
 
-class StripLike(Protocol):
+class StripLike(SampledStrip, Protocol):
     """What a strip must know to be stitched in; ``WrinkleStrip`` does."""
-
-    @property
-    def name(self) -> str:
-        """What messages call it."""
 
     @property
     def p(self) -> Directrix:
@@ -43,18 +40,6 @@ class StripLike(Protocol):
     @property
     def q(self) -> Directrix:
         """The profile along the opening's Q side."""
-
-    @property
-    def p_samples(self) -> Samples:
-        """The samples of P."""
-
-    @property
-    def q_samples(self) -> Samples:
-        """The samples of Q."""
-
-    @property
-    def triangulation(self) -> Triangulation:
-        """The strip itself."""
 
     def topods_shell(self) -> TopoDS_Shell:
         """Returns its surface."""
