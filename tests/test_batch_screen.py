@@ -195,6 +195,8 @@ def test_ctrl_c_exits_with_130_and_tells_how_to_resume(bench: Bench) -> None:
         stderr=subprocess.PIPE,
         text=True,
         start_new_session=True,
+        # Whoever started the tests in the background may have turned interrupts off for all of us.
+        preexec_fn=partial(signal.signal, signal.SIGINT, signal.SIG_DFL),
     )
     assert running.stdout is not None
     while '"write"' not in running.stdout.readline():
