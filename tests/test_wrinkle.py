@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from wrinkle_cad import InputError, WrinkleStrip
+from wrinkle_cad import InputError, PieceSettings, WrinkleStrip
 
 
 def arc_points(height: float, count: int = 40) -> NDArray[np.float64]:
@@ -46,6 +46,15 @@ def test_the_pattern_is_a_sketch_on_xy_of_the_strips_area(strip: WrinkleStrip) -
     assert sketch.area == pytest.approx(strip.report.area_3d_mm2, rel=1e-3)
     box = sketch.bounding_box()
     assert pytest.approx((0.0, 0.0), abs=1e-9) == (box.min.Z, box.max.Z)
+
+
+def test_options_of_the_pattern_go_by_name(strip: WrinkleStrip) -> None:
+    (piece,) = strip.pattern(seam_allowance=(6, 6, 4, 4), size="42").pieces
+    assert piece.size == "42"
+    assert piece.widths == (6, 6, 4, 4)
+    assert strip.pattern(PieceSettings(size="41"), size="42").pieces[0].size == "42"
+    with pytest.raises(InputError, match="allowance_seam"):
+        strip.pattern(allowance_seam=6)
 
 
 def test_shell_and_sketch_work_inside_builders(strip: WrinkleStrip) -> None:

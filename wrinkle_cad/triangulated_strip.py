@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+from dataclasses import replace
 from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -215,18 +216,27 @@ class TriangulatedStrip:
         p_mm, q_mm = (float(np.linalg.norm(chord, axis=1).sum()) for chord in chords)
         return p_mm, q_mm
 
-    def pattern(self, piece_settings: PieceSettings | None = None) -> Pattern:
+    def pattern(self, piece_settings: PieceSettings | None = None, **options: Any) -> Pattern:
         """The flat pattern.
 
         Args:
-            piece_settings: allowances, notches, texts and the rest; the defaults when None.
+            piece_settings: allowances, notches, texts and the rest; when None, the defaults with
+                the strip's tolerance.
+            options: fields of ``PieceSettings`` by name; they go before ``piece_settings``.
 
         Raises:
-            InputError: the flat strip covers itself and the settings forbid to split it.
+            InputError: the flat strip covers itself and the settings forbid to split it, or an
+                option is unknown or out of its range.
         """
         from .cut_pattern import pattern_of_strips
+        from .pattern.options import PieceSettings
 
-        return pattern_of_strips([self], piece_settings)
+        known = PieceSettings.__dataclass_fields__
+        for name in options:
+            if name not in known:
+                raise InputError(f"pattern option - {name!r} - one of {', '.join(known)}")
+        base = piece_settings or PieceSettings(tolerance=self.tolerance)
+        return pattern_of_strips([self], replace(base, **options))
 
     def plot_validity(self, ax: Axes) -> Axes:
         """Draws the validity matrix with this strip's path and the local one's."""
