@@ -32,7 +32,7 @@ LAYER = {
     "outcome": 8,
     "job_arguments": 8,
     "phases": 9,
-    "job_parts": 9,
+    "job_parts": 9.5,
     "outputs": 9,
     "summary": 10,
     "wrinkled_upper": 10,

@@ -5,10 +5,9 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any, Final
 
-from .cad.loading import kernel_importable
 from .job import Job
-from .job_parts import strip_of
-from .outputs import check_outputs_are_ours, outputs_together
+from .job_parts import read_chosen, strip_of
+from .outputs import outputs_together
 from .summary import to_json
 
 _KINDS: Final = ("compare.json", "compare.html")
@@ -30,11 +29,7 @@ def compare_job(job: Job) -> tuple[dict[str, Any], tuple[Path, ...]]:
         InputError: the file or a curve cannot be used.
         ExportError: the files cannot be written.
     """
-    with kernel_importable():
-        from .cad.choose import choose_inputs
-        from .cad.read import read_cad
-    check_outputs_are_ours(job, _KINDS)
-    chosen = choose_inputs(read_cad(job.input, unit=job.unit), p=job.p, q=job.q, upper=job.upper)
+    _, chosen = read_chosen(job, _KINDS)
 
     from .report.compare import compare, comparison_summary, write_comparison_page
 

@@ -9,10 +9,14 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, cast
 
 from . import settings
+from .cad.loading import kernel_importable
 from .findings import Finding
 from .job import Job
+from .outputs import check_outputs_are_ours
 
 if TYPE_CHECKING:
+    from .cad.choose import Chosen
+    from .cad.shapes import CadFile
     from .cut_pattern import Pattern
     from .pattern.contours import Curves
     from .pattern.dxf import DxfVersion
@@ -25,6 +29,26 @@ def output_kinds(job: Job) -> tuple[str, ...]:
     """The endings of the files that the job writes, in the order in which they are listed."""
     extra = tuple(kind for kind in ("svg", "pdf") if getattr(job, kind))
     return ("step", "stl", "dxf", "json", "html", *extra)
+
+
+def read_chosen(job: Job, kinds: tuple[str, ...]) -> tuple[CadFile, Chosen]:
+    """Reads the job's file and takes its curves and upper.
+
+    Args:
+        job: the settings.
+        kinds: the outputs that will be written, which are checked first.
+
+    Raises:
+        JobError: an output would replace the input or a file of somebody else.
+        InputError: the file cannot be used.
+        CadError: the kernel cannot be loaded.
+    """
+    with kernel_importable():
+        from .cad.choose import choose_inputs
+        from .cad.read import read_cad
+    check_outputs_are_ours(job, kinds)
+    file = read_cad(job.input, unit=job.unit)
+    return file, choose_inputs(file, p=job.p, q=job.q, upper=job.upper)
 
 
 def strip_of(job: Job, p: object, q: object, name: str) -> WrinkleStrip:

@@ -8,12 +8,11 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
 from . import settings
-from .cad.loading import kernel_importable
 from .errors import JobError, WrinkleError
 from .findings import Finding
 from .job import Job
 from .outcome import JobDone, JobFailed, Progress
-from .outputs import check_outputs_are_ours, hashes_of, output_paths, outputs_together
+from .outputs import hashes_of, output_paths, outputs_together
 from .phases import PhaseClock
 from .summary import summary_of, to_json
 
@@ -78,14 +77,9 @@ def _run(job: Job, clock: PhaseClock) -> JobDone:
 
 
 def _read(job: Job) -> tuple[CadFile, Chosen]:
-    with kernel_importable():
-        from .cad.choose import choose_inputs
-        from .cad.read import read_cad
-    from .job_parts import output_kinds
+    from .job_parts import output_kinds, read_chosen
 
-    check_outputs_are_ours(job, output_kinds(job))
-    file = read_cad(job.input, unit=job.unit)
-    return file, choose_inputs(file, p=job.p, q=job.q, upper=job.upper)
+    return read_chosen(job, output_kinds(job))
 
 
 def _make(job: Job, chosen: Chosen, clock: PhaseClock) -> Made:
@@ -94,7 +88,8 @@ def _make(job: Job, chosen: Chosen, clock: PhaseClock) -> Made:
     from .writing import Made
 
     with clock.phase("strip"):
-        piece_settings = piece_settings_of(job, limits_of(job))
+        limits = limits_of(job)
+        piece_settings = piece_settings_of(job, limits)
         upper = None
         if chosen.upper is not None:
             from .wrinkled_upper import wrinkle_upper
@@ -112,7 +107,7 @@ def _make(job: Job, chosen: Chosen, clock: PhaseClock) -> Made:
     with clock.phase("pattern"):
         pattern = pattern_of_strips(strips, piece_settings)
     name = "" if chosen.upper is None else chosen.upper.name
-    return Made(strips, pattern, upper, name or job.name)
+    return Made(strips, pattern, limits, upper, name or job.name)
 
 
 def _check_no_waves(job: Job) -> None:
@@ -124,15 +119,13 @@ def _check_no_waves(job: Job) -> None:
 
 
 def _judged(job: Job, file: CadFile, chosen: Chosen, made: Made) -> dict[str, Any]:
-    from .job_parts import limits_of
-
     findings = [
         *(made.upper.findings if made.upper is not None else ()),
         *(finding for strip in made.strips for finding in findings_on(strip, strip.report)),
         *made.pattern.findings,
     ]
     reports = [strip.report for strip in made.strips]
-    summary = summary_of(job, file, chosen, reports, findings, limits_of(job))
+    summary = summary_of(job, file, chosen, reports, findings, made.limits)
     if made.upper is not None:
         summary["stitch"] = made.upper.stitch_as_json()
     return summary

@@ -16,6 +16,7 @@ from .triangulated_strip import TriangulatedStrip
 if TYPE_CHECKING:
     from .cad.shapes import Part
     from .cut_pattern import Pattern
+    from .report.material import Limits
     from .report.views import MeshView
     from .wrinkled_upper import WrinkledUpper
 
@@ -28,6 +29,8 @@ class Made:
     """The wrinkles, then the bands."""
     pattern: Pattern
     """The pieces of all of them."""
+    limits: Limits
+    """What the strips are judged by."""
     upper: WrinkledUpper | None
     """The upper with the wrinkles stitched in; None when the file has no upper."""
     upper_name: str = ""
