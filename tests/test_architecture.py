@@ -18,7 +18,7 @@ LAYER = {
     "errors": 0,
     "settings": 0,
     "findings": 0,
-    "atomic": 0,
+    "files": 0.5,
     "strip": 1,
     "pattern": 2,
     "cad": 3,

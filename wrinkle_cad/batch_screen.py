@@ -11,9 +11,9 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import Any, Final, TextIO
 
-from .batch.conversion import ConversionOptions, convert
-from .batch.crew import Crew
-from .batch.events import (
+from wrinkle_cad.batch.conversion import ConversionOptions, convert
+from wrinkle_cad.batch.crew import Crew
+from wrinkle_cad.batch.events import (
     BatchEvent,
     BatchStarted,
     BatchSummary,
@@ -22,13 +22,13 @@ from .batch.events import (
     FileSkipped,
     Listener,
 )
-from .batch.executor import make_crew
-from .batch.inputs import find_sources
-from .batch.plan import PlannedJob, plan_batch
-from .batch.rehearsal import DONE_BEFORE, TO_DO, rehearse
-from .batch.summary import total_seconds
-from .errors import InputError
-from .job import read_job_toml
+from wrinkle_cad.batch.executor import make_crew
+from wrinkle_cad.batch.inputs import find_sources
+from wrinkle_cad.batch.plan import PlannedJob, plan_batch
+from wrinkle_cad.batch.rehearsal import DONE_BEFORE, TO_DO, rehearse
+from wrinkle_cad.batch.summary import total_seconds
+from wrinkle_cad.errors import InputError
+from wrinkle_cad.job import read_job_toml
 
 DONE: Final = 0
 FAILED: Final = 1
@@ -140,7 +140,7 @@ def _crew(given: argparse.Namespace) -> Iterator[Crew]:
                 f"--{name} {value:g} - together with --scheduler - the cluster's workers cannot be"
                 " held to it - set it up there, or leave it out"
             )
-    from .batch.cluster import cluster_executor
+    from wrinkle_cad.batch.cluster import cluster_executor
 
     with cluster_executor(given.scheduler) as (executor, in_flight):
         yield make_crew(executor=executor, in_flight=in_flight, **limits)
@@ -161,7 +161,7 @@ def _listener(given: argparse.Namespace, total: int) -> Iterator[Listener]:
     elif given.quiet:
         yield _tell_failures
     elif sys.stderr.isatty():
-        from .batch_display import live_display
+        from wrinkle_cad.batch_display import live_display
 
         with live_display(total) as listener:
             yield listener
@@ -215,7 +215,7 @@ def _show_summary(given: argparse.Namespace, summary: BatchSummary) -> None:
         line = {"event": "ended", **asdict(summary), "folder": str(summary.folder)}
         _say(sys.stdout, json.dumps(line))
     elif not given.quiet:
-        from .batch_display import print_summary
+        from wrinkle_cad.batch_display import print_summary
 
         print_summary(summary)
     if summary.stopped_by:

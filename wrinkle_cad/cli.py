@@ -16,12 +16,12 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
-from .batch_arguments import add_batch_arguments
-from .errors import WrinkleError
-from .job_arguments import add_job_arguments, job_keywords
+from wrinkle_cad.batch_arguments import add_batch_arguments
+from wrinkle_cad.errors import WrinkleError
+from wrinkle_cad.job_arguments import add_job_arguments, job_keywords
 
 if TYPE_CHECKING:
-    from .outcome import JobDone
+    from wrinkle_cad.outcome import JobDone
 
 DONE: Final = 0
 FAILED: Final = 1
@@ -139,7 +139,7 @@ def _add_debug(parser: argparse.ArgumentParser) -> None:
 
 class _Version(argparse.Action):
     def __call__(self, parser: argparse.ArgumentParser, *_: object) -> None:
-        from .versions import installed_versions
+        from wrinkle_cad.versions import installed_versions
 
         for name, version in installed_versions().items():
             print(f"{name} {version}")
@@ -147,10 +147,10 @@ class _Version(argparse.Action):
 
 
 def _run(given: argparse.Namespace) -> int:
-    from .job import make_job
-    from .outcome import JobFailed
-    from .screen import progress_on_screen
-    from .workflow import run_job
+    from wrinkle_cad.job import make_job
+    from wrinkle_cad.outcome import JobFailed
+    from wrinkle_cad.screen import progress_on_screen
+    from wrinkle_cad.workflow import run_job
 
     job = make_job(given.input, job_keywords(given, os.environ), given.job)
     with progress_on_screen(is_wanted=not given.quiet) as progress:
@@ -171,7 +171,7 @@ def job_misses_limits(outcome: JobDone) -> bool:
 
 
 def _print_done(outcome: JobDone) -> None:
-    from .screen import one_line
+    from wrinkle_cad.screen import one_line
 
     for strip in outcome.summary["strips"]:
         print(
@@ -190,14 +190,14 @@ def _print_done(outcome: JobDone) -> None:
 
 
 def _batch(given: argparse.Namespace) -> int:
-    from .batch_screen import run_batch_command
+    from wrinkle_cad.batch_screen import run_batch_command
 
     return run_batch_command(given, job_keywords(given, os.environ))
 
 
 def _inspect(given: argparse.Namespace) -> int:
-    from .inspection import inspect_file
-    from .screen import print_inspection
+    from wrinkle_cad.inspection import inspect_file
+    from wrinkle_cad.screen import print_inspection
 
     inspection = inspect_file(given.input, unit=given.unit, p=given.p, q=given.q, upper=given.upper)
     if given.json:
@@ -208,9 +208,9 @@ def _inspect(given: argparse.Namespace) -> int:
 
 
 def _compare(given: argparse.Namespace) -> int:
-    from .comparison import compare_job
-    from .job import make_job
-    from .screen import print_comparison
+    from wrinkle_cad.comparison import compare_job
+    from wrinkle_cad.job import make_job
+    from wrinkle_cad.screen import print_comparison
 
     job = make_job(given.input, job_keywords(given, os.environ))
     summary, outputs = compare_job(job)
@@ -221,8 +221,8 @@ def _compare(given: argparse.Namespace) -> int:
 
 
 def _check(given: argparse.Namespace) -> int:
-    from .pattern.check import judge_dxf
-    from .screen import one_line
+    from wrinkle_cad.pattern.check import judge_dxf
+    from wrinkle_cad.screen import one_line
 
     report = judge_dxf(given.input, cut_layers=tuple(given.cut_layer))
     if given.json:
@@ -239,7 +239,7 @@ def _check(given: argparse.Namespace) -> int:
 
 
 def _doctor(_: argparse.Namespace) -> int:
-    from .doctor import diagnose
+    from wrinkle_cad.doctor import diagnose
 
     diagnoses = diagnose(os.environ)
     for diagnosis in diagnoses:

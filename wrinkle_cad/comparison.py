@@ -5,10 +5,10 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any, Final
 
-from .job import Job
-from .job_parts import read_chosen, strip_of
-from .outputs import outputs_together
-from .summary import to_json
+from wrinkle_cad.job import Job
+from wrinkle_cad.job_parts import read_chosen, strip_of
+from wrinkle_cad.outputs import outputs_together
+from wrinkle_cad.summary import to_json
 
 _KINDS: Final = ("compare.json", "compare.html")
 
@@ -31,7 +31,7 @@ def compare_job(job: Job) -> tuple[dict[str, Any], tuple[Path, ...]]:
     """
     _, chosen = read_chosen(job, _KINDS)
 
-    from .report.compare import compare, comparison_summary, write_comparison_page
+    from wrinkle_cad.report.compare import compare, comparison_summary, write_comparison_page
 
     rows = {}
     for given in chosen.strips:

@@ -8,18 +8,19 @@ from datetime import datetime
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Protocol
 
+from wrinkle_cad.findings import Finding
+from wrinkle_cad.pattern.making import make_pieces, rail_corners
+from wrinkle_cad.pattern.nesting import laid_out
+from wrinkle_cad.pattern.options import NotchRule, PieceSettings
+from wrinkle_cad.pattern.piece import PatternPiece
+from wrinkle_cad.strip.sampled_strip import SampledStrip
+
 from . import settings
-from .findings import Finding
-from .pattern.making import make_pieces, rail_corners
-from .pattern.nesting import laid_out
-from .pattern.options import NotchRule, PieceSettings
-from .pattern.piece import PatternPiece
-from .strip.sampled_strip import SampledStrip
 
 if TYPE_CHECKING:
-    from .pattern.contours import Curves
-    from .pattern.dxf import DxfVersion
-    from .strip.unrolling import Unrolling
+    from wrinkle_cad.pattern.contours import Curves
+    from wrinkle_cad.pattern.dxf import DxfVersion
+    from wrinkle_cad.strip.unrolling import Unrolling
 
 
 class FlatStrip(SampledStrip, Protocol):
@@ -67,7 +68,7 @@ class Pattern:
     @property
     def sketch(self) -> Any:
         """The cut lines as a build123d ``Sketch`` on XY."""
-        from .cad.guests import sketch_from_outline
+        from wrinkle_cad.cad.guests import sketch_from_outline
 
         return sketch_from_outline([piece.cut_line for piece in self.pieces])
 
@@ -95,7 +96,7 @@ class Pattern:
             InputError: an unknown profile or version.
             ExportError: the file could not be written; what stood there before is untouched.
         """
-        from .pattern.dxf import write_dxf
+        from wrinkle_cad.pattern.dxf import write_dxf
 
         return write_dxf(
             Path(path),
@@ -118,7 +119,7 @@ class Pattern:
             InputError: an unknown profile.
             ExportError: the file could not be written; what stood there before is untouched.
         """
-        from .pattern.svg import write_svg
+        from wrinkle_cad.pattern.svg import write_svg
 
         return write_svg(Path(path), self.pieces, profile=profile)
 
@@ -134,7 +135,7 @@ class Pattern:
             InputError: an unknown profile.
             ExportError: the file could not be written; what stood there before is untouched.
         """
-        from .pattern.pdf import write_pdf
+        from wrinkle_cad.pattern.pdf import write_pdf
 
         return write_pdf(Path(path), self.pieces, profile=profile)
 

@@ -6,12 +6,13 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from wrinkle_cad.cad.loading import kernel_importable
+from wrinkle_cad.errors import InputError
+
 from . import settings
-from .cad.loading import kernel_importable
-from .errors import InputError
 
 if TYPE_CHECKING:
-    from .cad.choose import Chosen
+    from wrinkle_cad.cad.choose import Chosen
 
 
 @dataclass(frozen=True, slots=True)
@@ -75,8 +76,8 @@ def inspect_file(
         InputError: the file cannot be read.
     """
     with kernel_importable():
-        from .cad.choose import choose_inputs
-        from .cad.read import read_cad
+        from wrinkle_cad.cad.choose import choose_inputs
+        from wrinkle_cad.cad.read import read_cad
     file = read_cad(path, unit=unit)
     chosen: Chosen | None = None
     try:

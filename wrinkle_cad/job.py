@@ -12,8 +12,9 @@ from dataclasses import dataclass, fields
 from pathlib import Path
 from typing import Any, Final
 
+from wrinkle_cad.errors import JobError
+
 from . import settings
-from .errors import JobError
 
 _PATH_FIELDS: Final = ("input", "output_dir", "material")
 _CHOICES: Final[dict[str, tuple[str, ...]]] = {

@@ -8,9 +8,10 @@ from dataclasses import fields
 from pathlib import Path
 from typing import Any
 
+from wrinkle_cad.errors import InputError
+from wrinkle_cad.job import Job
+
 from . import settings
-from .errors import InputError
-from .job import Job
 
 
 def add_job_arguments(parser: argparse.ArgumentParser) -> None:

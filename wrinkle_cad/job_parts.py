@@ -8,21 +8,22 @@ from datetime import datetime
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, cast
 
+from wrinkle_cad.cad.loading import kernel_importable
+from wrinkle_cad.findings import Finding
+from wrinkle_cad.job import Job
+from wrinkle_cad.outputs import check_outputs_are_ours
+
 from . import settings
-from .cad.loading import kernel_importable
-from .findings import Finding
-from .job import Job
-from .outputs import check_outputs_are_ours
 
 if TYPE_CHECKING:
-    from .cad.choose import Chosen
-    from .cad.shapes import CadFile
-    from .cut_pattern import Pattern
-    from .pattern.contours import Curves
-    from .pattern.dxf import DxfVersion
-    from .pattern.options import PieceSettings
-    from .report.material import Limits
-    from .wrinkle import WrinkleStrip
+    from wrinkle_cad.cad.choose import Chosen
+    from wrinkle_cad.cad.shapes import CadFile
+    from wrinkle_cad.cut_pattern import Pattern
+    from wrinkle_cad.pattern.contours import Curves
+    from wrinkle_cad.pattern.dxf import DxfVersion
+    from wrinkle_cad.pattern.options import PieceSettings
+    from wrinkle_cad.report.material import Limits
+    from wrinkle_cad.wrinkle import WrinkleStrip
 
 
 def output_kinds(job: Job) -> tuple[str, ...]:
@@ -44,8 +45,8 @@ def read_chosen(job: Job, kinds: tuple[str, ...]) -> tuple[CadFile, Chosen]:
         CadError: the kernel cannot be loaded.
     """
     with kernel_importable():
-        from .cad.choose import choose_inputs
-        from .cad.read import read_cad
+        from wrinkle_cad.cad.choose import choose_inputs
+        from wrinkle_cad.cad.read import read_cad
     check_outputs_are_ours(job, kinds)
     file = read_cad(job.input, unit=job.unit)
     return file, choose_inputs(file, p=job.p, q=job.q, upper=job.upper)
@@ -64,7 +65,7 @@ def strip_of(job: Job, p: object, q: object, name: str) -> WrinkleStrip:
         InputError: a curve cannot be used.
         CadError: the kernel could not evaluate a curve.
     """
-    from .wrinkle import WrinkleStrip
+    from wrinkle_cad.wrinkle import WrinkleStrip
 
     return WrinkleStrip(
         p,
@@ -86,7 +87,7 @@ def limits_of(job: Job) -> Limits:
     Raises:
         InputError: the material's file cannot be used.
     """
-    from .report.material import Limits, read_material
+    from wrinkle_cad.report.material import Limits, read_material
 
     limits = Limits(
         max_fold_deg=job.max_fold_deg,
@@ -106,7 +107,7 @@ def piece_settings_of(job: Job, limits: Limits) -> PieceSettings:
     Raises:
         InputError: a setting does not fit a piece.
     """
-    from .pattern.options import NotchRule, PieceSettings
+    from wrinkle_cad.pattern.options import NotchRule, PieceSettings
 
     def rule(at: tuple[float, ...]) -> NotchRule:
         if at:

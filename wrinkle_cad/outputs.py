@@ -11,9 +11,9 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any, Final
 
-from .atomic import replace_together
-from .errors import ExportError, JobError
-from .job import Job
+from wrinkle_cad.errors import ExportError, JobError
+from wrinkle_cad.files.atomic import replace_together
+from wrinkle_cad.job import Job
 
 SCHEMA: Final = "wrinkle_cad/job"
 SCHEMA_VERSION: Final = 1

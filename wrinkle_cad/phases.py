@@ -6,7 +6,7 @@ import time
 from collections.abc import Iterator
 from contextlib import contextmanager
 
-from .outcome import Progress
+from wrinkle_cad.outcome import Progress
 
 
 class PhaseClock:

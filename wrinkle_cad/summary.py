@@ -9,16 +9,16 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from .findings import Finding
-from .job import Job
-from .outputs import SCHEMA, SCHEMA_VERSION
-from .versions import installed_versions
+from wrinkle_cad.findings import Finding
+from wrinkle_cad.job import Job
+from wrinkle_cad.outputs import SCHEMA, SCHEMA_VERSION
+from wrinkle_cad.versions import installed_versions
 
 if TYPE_CHECKING:
-    from .cad.choose import Chosen
-    from .cad.shapes import CadFile
-    from .report.material import Limits
-    from .strip_report import StripReport
+    from wrinkle_cad.cad.choose import Chosen
+    from wrinkle_cad.cad.shapes import CadFile
+    from wrinkle_cad.report.material import Limits
+    from wrinkle_cad.strip_report import StripReport
 
 
 def summary_of(
@@ -39,7 +39,7 @@ def summary_of(
         findings: what was noticed.
         limits: what the strips are judged by.
     """
-    from .report.verdict import judge
+    from wrinkle_cad.report.verdict import judge
 
     entries = [report.as_json() for report in reports]
     return {

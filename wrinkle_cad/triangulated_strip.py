@@ -11,22 +11,23 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from wrinkle_cad.errors import CadError, InputError
+from wrinkle_cad.findings import Finding
+from wrinkle_cad.strip.convexity import validity_matrix
+from wrinkle_cad.strip.gaps import find_gaps
+from wrinkle_cad.strip.triangulation import Triangulation, triangulate
+from wrinkle_cad.strip.unrolling import Unrolling, unroll, unroll_cones
+from wrinkle_cad.strip_report import Role, StripReport, report_on
+
 from . import settings
-from .errors import CadError, InputError
-from .findings import Finding
-from .strip.convexity import validity_matrix
-from .strip.gaps import find_gaps
-from .strip.triangulation import Triangulation, triangulate
-from .strip.unrolling import Unrolling, unroll, unroll_cones
-from .strip_report import Role, StripReport, report_on
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-    from .cad.directrix import Directrix
-    from .cut_pattern import Pattern
-    from .pattern.options import PieceSettings
-    from .strip.sampling import Samples
+    from wrinkle_cad.cad.directrix import Directrix
+    from wrinkle_cad.cut_pattern import Pattern
+    from wrinkle_cad.pattern.options import PieceSettings
+    from wrinkle_cad.strip.sampling import Samples
 
 
 class TriangulatedStrip:
@@ -86,7 +87,7 @@ class TriangulatedStrip:
         kind = self.surface if surface is None else surface
         check_surface(kind)
         if kind not in self._shells:
-            from .cad.faces import build_shell
+            from wrinkle_cad.cad.faces import build_shell
 
             self._shells[kind] = build_shell(
                 self.triangulation, self.p, self.q, self.p_samples, self.q_samples, kind
@@ -102,7 +103,7 @@ class TriangulatedStrip:
         Raises:
             CadError: the kernel could not build a valid shell.
         """
-        from .cad.guests import to_build123d
+        from wrinkle_cad.cad.guests import to_build123d
 
         return to_build123d(self.topods_shell(surface), label=self.name, color=self.color)
 
@@ -119,8 +120,8 @@ class TriangulatedStrip:
         Raises:
             InputError: an arc length lies beyond the edge.
         """
-        from .cad.directrix import make_directrix
-        from .cad.rail_points import points_at_arcs
+        from wrinkle_cad.cad.directrix import make_directrix
+        from wrinkle_cad.cad.rail_points import points_at_arcs
 
         curve, samples = (self.p, self.p_samples) if rail == "P" else (self.q, self.q_samples)
         if self.surface == "facets":
@@ -174,7 +175,7 @@ class TriangulatedStrip:
     @cached_property
     def report(self) -> StripReport:
         """The strip's numbers."""
-        from .cad.kernel import faces_of
+        from wrinkle_cad.cad.kernel import faces_of
 
         return report_on(
             self.name,
@@ -201,7 +202,7 @@ class TriangulatedStrip:
     @cached_property
     def _measured_area(self) -> tuple[float, float]:
         """The area as exactly as it can be had: a sound strip does not fail for its last digits."""
-        from .cad.kernel import area_of
+        from wrinkle_cad.cad.kernel import area_of
 
         *tried, coarsest = settings.AREA_RELATIVE_ERRORS
         for error in tried:
@@ -228,8 +229,8 @@ class TriangulatedStrip:
             InputError: the flat strip covers itself and the settings forbid to split it, or an
                 option is unknown or out of its range.
         """
-        from .cut_pattern import pattern_of_strips
-        from .pattern.options import PieceSettings
+        from wrinkle_cad.cut_pattern import pattern_of_strips
+        from wrinkle_cad.pattern.options import PieceSettings
 
         known = PieceSettings.__dataclass_fields__
         for name in options:
@@ -240,19 +241,19 @@ class TriangulatedStrip:
 
     def plot_validity(self, ax: Axes) -> Axes:
         """Draws the validity matrix with this strip's path and the local one's."""
-        from .report.figures import plot_validity
+        from wrinkle_cad.report.figures import plot_validity
 
         return plot_validity(ax, self.valid, self.triangulation, others=(self.local,))
 
     def plot_energy(self, ax: Axes) -> Axes:
         """Draws the bending energy along the strip beside the local and the least-bending one."""
-        from .report.figures import plot_energy
+        from wrinkle_cad.report.figures import plot_energy
 
         return plot_energy(ax, self.triangulation, (self.local, self.least_bending))
 
     def plot_pattern(self, ax: Axes, piece_settings: PieceSettings | None = None) -> Axes:
         """Draws the pattern to scale on matplotlib axes; the settings are those of ``pattern``."""
-        from .report.figures import plot_pattern
+        from wrinkle_cad.report.figures import plot_pattern
 
         return plot_pattern(ax, self.pattern(piece_settings).pieces)
 
@@ -262,8 +263,8 @@ class TriangulatedStrip:
         Raises:
             ExportError: the file could not be written; what stood there before is untouched.
         """
-        from .cad.shapes import Part
-        from .cad.write import write_step
+        from wrinkle_cad.cad.shapes import Part
+        from wrinkle_cad.cad.write import write_step
 
         part = Part(self.topods_shell(), self.name, self.color)
         write_step(Path(path), [part], schema=schema)
@@ -274,7 +275,7 @@ class TriangulatedStrip:
         Raises:
             ExportError: the file could not be written; what stood there before is untouched.
         """
-        from .cad.write import write_stl
+        from wrinkle_cad.cad.write import write_stl
 
         write_stl(Path(path), self.topods_shell(), tolerance=self.tolerance)
 

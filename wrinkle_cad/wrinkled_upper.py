@@ -6,19 +6,20 @@ import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, cast
 
+from wrinkle_cad.findings import Finding
+from wrinkle_cad.job import Job
+from wrinkle_cad.job_parts import strip_of
+from wrinkle_cad.triangulated_strip import TriangulatedStrip
+from wrinkle_cad.wrinkle import WrinkleStrip
+
 from . import settings
-from .findings import Finding
-from .job import Job
-from .job_parts import strip_of
-from .triangulated_strip import TriangulatedStrip
-from .wrinkle import WrinkleStrip
 
 if TYPE_CHECKING:
-    from .cad.choose import Chosen, StripInput
-    from .cad.opening import Opening
-    from .cad.profiles import Direction
-    from .cad.shapes import NamedShape
-    from .cad.stitch import Stitched
+    from wrinkle_cad.cad.choose import Chosen, StripInput
+    from wrinkle_cad.cad.opening import Opening
+    from wrinkle_cad.cad.profiles import Direction
+    from wrinkle_cad.cad.shapes import NamedShape
+    from wrinkle_cad.cad.stitch import Stitched
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -90,7 +91,7 @@ def wrinkle_upper(job: Job, chosen: Chosen) -> WrinkledUpper:
         InputError: a rail or a profile does not fit the upper.
         CadError: the parts do not become one valid shell.
     """
-    from .cad.stitch import stitch
+    from wrinkle_cad.cad.stitch import stitch
 
     assert chosen.upper is not None
     body = chosen.upper.shape
@@ -108,7 +109,7 @@ def wrinkle_upper(job: Job, chosen: Chosen) -> WrinkledUpper:
 
 
 def _carved(job: Job, body: object, given: StripInput) -> Opening:
-    from .cad.carve import carve
+    from wrinkle_cad.cad.carve import carve
 
     rails = (given.p.shape, given.q.shape)
     options: dict[str, Any] = {"fade": job.fade, "allow_split": job.allow_split}
@@ -126,11 +127,11 @@ def _profiles(job: Job, opening: Opening, given: StripInput) -> tuple[object, ob
     if job.waves is None or job.height is None:
         if opening.request.margin == 0.0 and max(opening.distances) <= job.tolerance:
             # Rails that lie on the upper within the tolerance are the opening's own boundary.
-            from .cad.bands import side_curve
+            from wrinkle_cad.cad.bands import side_curve
 
             return side_curve(opening.p_edges, "P"), side_curve(opening.q_edges, "Q")
         return given.p.shape, given.q.shape
-    from .cad.profiles import profile_curves
+    from wrinkle_cad.cad.profiles import profile_curves
 
     p_phase, q_phase = job.phase_deg or settings.WAVE_PHASES
     return profile_curves(

@@ -8,17 +8,18 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from wrinkle_cad.job import Job
+from wrinkle_cad.job_parts import write_pattern
+from wrinkle_cad.triangulated_strip import TriangulatedStrip
+
 from . import settings
-from .job import Job
-from .job_parts import write_pattern
-from .triangulated_strip import TriangulatedStrip
 
 if TYPE_CHECKING:
-    from .cad.shapes import Part
-    from .cut_pattern import Pattern
-    from .report.material import Limits
-    from .report.views import MeshView
-    from .wrinkled_upper import WrinkledUpper
+    from wrinkle_cad.cad.shapes import Part
+    from wrinkle_cad.cut_pattern import Pattern
+    from wrinkle_cad.report.material import Limits
+    from wrinkle_cad.report.views import MeshView
+    from wrinkle_cad.wrinkled_upper import WrinkledUpper
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -43,8 +44,8 @@ def write_shapes(job: Job, made: Made, paths: Mapping[str, Path]) -> None:
     Raises:
         ExportError: a file cannot be written.
     """
-    from .cad.kernel import make_compound
-    from .cad.write import write_step, write_stl
+    from wrinkle_cad.cad.kernel import make_compound
+    from wrinkle_cad.cad.write import write_step, write_stl
 
     parts = _parts_of(made)
     everything = [*parts, *_notch_parts(made)]
@@ -66,8 +67,8 @@ def write_flat(job: Job, made: Made, paths: Mapping[str, Path]) -> list[dict[str
 
 def page_of(made: Made, summary: Mapping[str, Any]) -> str:
     """The job's page."""
-    from .report.page import write_page
-    from .report.views import StripView
+    from wrinkle_cad.report.page import write_page
+    from wrinkle_cad.report.views import StripView
 
     views = [
         StripView(
@@ -99,11 +100,11 @@ def timestamp_of(job: Job) -> datetime.datetime:
 
 
 def _parts_of(made: Made) -> Sequence[Part]:
-    from .cad.shapes import Part
+    from wrinkle_cad.cad.shapes import Part
 
     if made.upper is None:
         return [Part(strip.topods_shell(), strip.name, strip.color) for strip in made.strips]
-    from .cad.stitched_part import stitched_part
+    from wrinkle_cad.cad.stitched_part import stitched_part
 
     upper, colors = made.upper, {strip.name: strip.color for strip in made.strips}
     return [stitched_part(upper.stitched, upper.openings, upper.given, made.upper_name, colors)]
@@ -111,8 +112,8 @@ def _parts_of(made: Made) -> Sequence[Part]:
 
 def _notch_parts(made: Made) -> Iterator[Part]:
     """A named point for every notch, once for two pieces that are sewn together there."""
-    from .cad.kernel import make_vertex
-    from .cad.shapes import Part
+    from wrinkle_cad.cad.kernel import make_vertex
+    from wrinkle_cad.cad.shapes import Part
 
     seen: set[int] = set()
     for index, strip in enumerate(made.strips):
@@ -133,9 +134,9 @@ def _body_view(made: Made) -> MeshView | None:
         return None
     import numpy as np
 
-    from .cad.kernel import make_compound
-    from .cad.mesh import mesh_of
-    from .report.views import MeshView
+    from wrinkle_cad.cad.kernel import make_compound
+    from wrinkle_cad.cad.mesh import mesh_of
+    from wrinkle_cad.report.views import MeshView
 
     strips = {strip.name for strip in made.strips}
     faces = [face for name, own in made.upper.stitched.parts if name not in strips for face in own]

@@ -13,11 +13,12 @@ import pytest
 
 from tests.batch.conftest import Bench
 from tests.batch.stand_ins import KINDS, limits_missed_job
-from wrinkle_cad.batch import delivery, staging
+from wrinkle_cad.batch import delivery
 from wrinkle_cad.batch.events import BatchSummary, FileFinished, FileSkipped
 from wrinkle_cad.batch.lock import locked_folder
 from wrinkle_cad.batch.manifest import Manifest
 from wrinkle_cad.errors import ExportError, InputError
+from wrinkle_cad.files import staging
 
 
 def counts(summary: BatchSummary) -> tuple[int, int, int]:

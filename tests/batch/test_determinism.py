@@ -21,7 +21,7 @@ from wrinkle_cad.batch.ending import CrewLimits
 from wrinkle_cad.batch.events import BatchSummary
 from wrinkle_cad.batch.inputs import find_sources
 from wrinkle_cad.batch.plan import plan_batch
-from wrinkle_cad.batch.staging import READY_PREFIX
+from wrinkle_cad.files.staging import READY_PREFIX
 
 ROOT = Path(__file__).parent.parent.parent
 EPOCH = 1767225600

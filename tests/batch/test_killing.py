@@ -17,7 +17,7 @@ import pytest
 from tests.batch.conftest import Bench
 from tests.batch.processes import assert_all_end, is_alive
 from tests.batch.stand_ins import KINDS, slow_job
-from wrinkle_cad.batch.staging import leftovers
+from wrinkle_cad.files.staging import leftovers
 
 ROOT = Path(__file__).parent.parent.parent
 FILES = 80

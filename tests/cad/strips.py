@@ -14,12 +14,7 @@ from OCP.STEPControl import STEPControl_Reader
 from OCP.TopoDS import TopoDS_Edge, TopoDS_Shape, TopoDS_Shell
 
 from wrinkle_cad.cad import kernel
-from wrinkle_cad.cad.directrix import (
-    Directrix,
-    make_directrix,
-    orient_alike,
-    sample_directrix,
-)
+from wrinkle_cad.cad.directrix import Directrix, make_directrix, orient_alike, sample_directrix
 from wrinkle_cad.cad.faces import build_shell
 from wrinkle_cad.cad.shapes import Part
 from wrinkle_cad.cad.splines import make_curve

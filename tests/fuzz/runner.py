@@ -29,7 +29,7 @@ from wrinkle_cad.batch.events import BatchEvent, FileFinished
 from wrinkle_cad.batch.inputs import CAD_SUFFIXES, find_sources
 from wrinkle_cad.batch.manifest import Record
 from wrinkle_cad.batch.plan import plan_batch
-from wrinkle_cad.batch.staging import leftovers
+from wrinkle_cad.files.staging import leftovers
 
 ROOT = Path(__file__).parent.parent.parent
 EXAMPLES = ROOT / "shoe_examples"

@@ -9,8 +9,7 @@ from typing import Final
 
 from wrinkle_cad import settings
 from wrinkle_cad.errors import InputError
-
-from .names import printable
+from wrinkle_cad.files.names import printable
 
 _CONNECT_S: Final = 10
 _TASKS_PER_THREAD: Final = 2

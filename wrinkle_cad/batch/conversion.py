@@ -9,6 +9,8 @@ from pathlib import Path
 
 from wrinkle_cad import settings
 from wrinkle_cad.errors import ExportError
+from wrinkle_cad.files.names import printable
+from wrinkle_cad.files.staging import discard_staging, leftovers, move_into_place, open_staging
 from wrinkle_cad.job import Job
 from wrinkle_cad.outcome import JobDone, JobFailed
 from wrinkle_cad.versions import installed_versions
@@ -16,23 +18,14 @@ from wrinkle_cad.versions import installed_versions
 from .crew import Crew, Finished, Phase
 from .delivery import deliver, failed_record
 from .disk_space import check_disk_space
-from .events import (
-    BatchStarted,
-    BatchSummary,
-    FileFinished,
-    FilePhase,
-    FileSkipped,
-    Listener,
-)
+from .events import BatchStarted, BatchSummary, FileFinished, FilePhase, FileSkipped, Listener
 from .executor import run_tasks
 from .fingerprint import hash_file, hash_settings
 from .index_page import write_index_page
 from .journal import Journal
 from .lock import locked_folder
 from .manifest import Manifest, Record, record_from_line
-from .names import printable
 from .plan import PlannedJob
-from .staging import discard_staging, leftovers, move_into_place, open_staging
 from .summary import write_summary_table
 from .task import JobFunction, Task, TaskResult
 

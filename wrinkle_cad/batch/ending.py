@@ -8,10 +8,10 @@ from typing import Final
 
 from wrinkle_cad import settings
 from wrinkle_cad.errors import InputError
+from wrinkle_cad.files.names import printable
 from wrinkle_cad.job import Job
 from wrinkle_cad.outcome import JobFailed
 
-from .names import printable
 from .worker import Confession
 
 GIB: Final = 1 << 30

@@ -12,6 +12,8 @@ from typing import Final
 
 from wrinkle_cad import settings
 from wrinkle_cad.errors import InputError
+from wrinkle_cad.files.names import collision_key
+from wrinkle_cad.files.staging import discard_staging, open_staging
 from wrinkle_cad.job import Job
 from wrinkle_cad.outcome import JobDone, JobFailed
 
@@ -19,8 +21,6 @@ from .crew import Crew, Event, Finished, WorkerCrew
 from .delivery import deliver
 from .ending import CrewLimits
 from .executor_crew import ExecutorCrew
-from .names import collision_key
-from .staging import discard_staging, open_staging
 from .task import JobFunction, Task
 
 

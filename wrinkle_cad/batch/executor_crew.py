@@ -13,11 +13,11 @@ from concurrent.futures import (
 )
 
 from wrinkle_cad import settings
+from wrinkle_cad.files.names import printable
 from wrinkle_cad.job import Job
 from wrinkle_cad.outcome import JobFailed
 
 from .crew import Event, Finished
-from .names import printable
 from .task import Task, TaskResult, run_task
 
 

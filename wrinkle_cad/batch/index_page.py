@@ -9,11 +9,11 @@ from pathlib import Path, PurePosixPath
 from typing import Final
 from urllib.parse import quote
 
-from wrinkle_cad.atomic import write_atomically
+from wrinkle_cad.files.atomic import write_atomically
+from wrinkle_cad.files.names import printable
 
 from .events import BatchSummary
 from .manifest import Record
-from .names import printable
 from .summary import total_seconds
 
 PAGE_NAME: Final = "index.html"

@@ -10,8 +10,7 @@ from pathlib import Path, PurePosixPath
 from typing import Final
 
 from wrinkle_cad.errors import InputError
-
-from .names import printable
+from wrinkle_cad.files.names import printable
 
 CAD_SUFFIXES: Final = (".step", ".stp", ".p21", ".iges", ".igs", ".brep", ".brp")
 

@@ -6,7 +6,7 @@ from datetime import UTC, datetime
 from pathlib import Path
 from typing import Final
 
-from .names import printable
+from wrinkle_cad.files.names import printable
 
 LOG_NAME: Final = "batch.log"
 

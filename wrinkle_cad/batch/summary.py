@@ -8,10 +8,10 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any, Final
 
-from wrinkle_cad.atomic import write_atomically
+from wrinkle_cad.files.atomic import write_atomically
+from wrinkle_cad.files.names import printable
 
 from .manifest import Record
-from .names import printable
 
 TABLE_NAME: Final = "summary.csv"
 

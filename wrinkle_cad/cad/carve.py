@@ -17,15 +17,7 @@ from .border import border_chain, connected_groups, edge_middle, joined_faces
 from .directrix import Directrix, make_directrix, orient_alike
 from .face_areas import face_areas
 from .opening import CarveRequest, Opening
-from .outline import (
-    Rail,
-    Side,
-    across_rail,
-    end_between,
-    faded_margin,
-    rail_on,
-    side_of,
-)
+from .outline import Rail, Side, across_rail, end_between, faded_margin, rail_on, side_of
 from .projection import UpperFaces
 from .sewing import joined
 from .shape_index import ShapeIndex

@@ -25,8 +25,8 @@ from OCP.TopoDS import TopoDS_Shape
 from OCP.XCAFDoc import XCAFDoc_DocumentTool
 
 from wrinkle_cad import settings
-from wrinkle_cad.atomic import write_atomically
 from wrinkle_cad.errors import CadError, ExportError
+from wrinkle_cad.files.atomic import write_atomically
 
 from .face_styles import carried_over, styles_in
 from .kernel import faces_of, kernel_step

@@ -20,8 +20,8 @@ from ezdxf.addons import gerber_D6673, r12export
 from ezdxf.document import Drawing
 
 from wrinkle_cad import settings
-from wrinkle_cad.atomic import write_atomically
 from wrinkle_cad.errors import ExportError, InputError
+from wrinkle_cad.files.atomic import write_atomically
 from wrinkle_cad.findings import Finding
 
 from .aama import block_document, scale_piece

@@ -17,8 +17,8 @@ import numpy as np
 import shapely
 
 from wrinkle_cad import settings
-from wrinkle_cad.atomic import write_atomically
 from wrinkle_cad.errors import ExportError, InputError
+from wrinkle_cad.files.atomic import write_atomically
 from wrinkle_cad.findings import Finding
 
 from .drawing import Drawing, draw

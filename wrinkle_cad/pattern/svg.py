@@ -16,8 +16,8 @@ import numpy as np
 from ezdxf.colors import aci2rgb
 
 from wrinkle_cad import settings
-from wrinkle_cad.atomic import write_atomically
 from wrinkle_cad.errors import ExportError, InputError
+from wrinkle_cad.files.atomic import write_atomically
 from wrinkle_cad.findings import Finding
 
 from .drawing import Label, Spot, Stroke, draw

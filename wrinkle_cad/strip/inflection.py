@@ -7,11 +7,7 @@ from itertools import combinations
 import numpy as np
 import numpy.typing as npt
 
-from wrinkle_cad.settings import (
-    DOUBLE_INFLECTION_SAGITTAS,
-    INFLECTION_SAGITTAS,
-    INFLECTION_SAMPLES,
-)
+from wrinkle_cad.settings import DOUBLE_INFLECTION_SAGITTAS, INFLECTION_SAGITTAS, INFLECTION_SAMPLES
 
 from .path import Path
 

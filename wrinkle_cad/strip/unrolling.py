@@ -9,19 +9,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from wrinkle_cad.errors import InputError
-from wrinkle_cad.settings import (
-    TURNED_BACK_PER_TOLERANCE,
-    UNROLLING_ACCURACY,
-)
+from wrinkle_cad.settings import TURNED_BACK_PER_TOLERANCE, UNROLLING_ACCURACY
 
 from .chebyshev import FloatArray, PointAt, fit_cells
-from .development import (
-    THINNING_SHARE,
-    DevelopedRail,
-    develop_rail,
-    place_chain,
-    thinned,
-)
+from .development import THINNING_SHARE, DevelopedRail, develop_rail, place_chain, thinned
 from .overlap import is_overlapping
 from .sampling import Samples
 from .triangulation import P_STEP, Triangulation

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from wrinkle_cad.batch.staging import (
+from wrinkle_cad.files.staging import (
     RECORD_NAME,
     commit_staging,
     discard_staging,

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from wrinkle_cad.atomic import replace_together, write_aside, write_atomically
+from wrinkle_cad.files.atomic import replace_together, write_aside, write_atomically
 
 
 def names_in(folder: Path) -> set[str]:

@@ -8,7 +8,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from wrinkle_cad.batch.names import (
+from wrinkle_cad.errors import JobError
+from wrinkle_cad.files.names import (
     LONGEST_NAME,
     apply_mask,
     check_mask,
@@ -17,7 +18,6 @@ from wrinkle_cad.batch.names import (
     safe_folder,
     safe_name,
 )
-from wrinkle_cad.errors import JobError
 
 HOSTILE = (
     "../../x",
