@@ -20,7 +20,7 @@ from . import settings
 if TYPE_CHECKING:
     from wrinkle_cad.pattern.contours import Curves
     from wrinkle_cad.pattern.dxf import DxfVersion
-    from wrinkle_cad.strip.unrolling import Unrolling
+    from wrinkle_cad.strip.flat.unrolling import Unrolling
 
 
 class FlatStrip(SampledStrip, Protocol):

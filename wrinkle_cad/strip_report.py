@@ -11,9 +11,9 @@ import numpy as np
 
 from wrinkle_cad.report.gap_list import gap_entry
 from wrinkle_cad.report.material import smallest_bend_radius
+from wrinkle_cad.strip.flat.unrolling import Unrolling
 from wrinkle_cad.strip.gaps import Gap, covered_lengths
 from wrinkle_cad.strip.triangulation import Triangulation
-from wrinkle_cad.strip.unrolling import Unrolling
 
 Role = Literal["strip", "band"]
 

@@ -14,9 +14,9 @@ from numpy.typing import ArrayLike, NDArray
 from wrinkle_cad.errors import CadError, InputError
 from wrinkle_cad.findings import Finding
 from wrinkle_cad.strip.convexity import validity_matrix
+from wrinkle_cad.strip.flat.unrolling import Unrolling, unroll, unroll_cones
 from wrinkle_cad.strip.gaps import find_gaps
 from wrinkle_cad.strip.triangulation import Triangulation, triangulate
-from wrinkle_cad.strip.unrolling import Unrolling, unroll, unroll_cones
 from wrinkle_cad.strip_report import Role, StripReport, report_on
 
 from . import settings
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from wrinkle_cad.cad.directrix import Directrix
     from wrinkle_cad.cut_pattern import Pattern
     from wrinkle_cad.pattern.options import PieceSettings
-    from wrinkle_cad.strip.sampling import Samples
+    from wrinkle_cad.strip.curve.sampling import Samples
 
 
 class TriangulatedStrip:

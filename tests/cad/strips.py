@@ -19,7 +19,7 @@ from wrinkle_cad.cad.faces import build_shell
 from wrinkle_cad.cad.shapes import Part
 from wrinkle_cad.cad.splines import make_curve
 from wrinkle_cad.cad.write import write_step
-from wrinkle_cad.strip.sampling import Samples
+from wrinkle_cad.strip.curve.sampling import Samples
 from wrinkle_cad.strip.triangulation import Triangulation, triangulate
 
 Floats = NDArray[np.float64]

@@ -22,7 +22,7 @@ from wrinkle_cad.cad import kernel
 from wrinkle_cad.cad.directrix import Directrix, make_directrix, sample_directrix
 from wrinkle_cad.cad.faces import build_shell
 from wrinkle_cad.errors import CadError, InputError
-from wrinkle_cad.strip.sampling import Samples
+from wrinkle_cad.strip.curve.sampling import Samples
 from wrinkle_cad.strip.triangulation import P_STEP, Q_STEP, measured
 
 from .makers import line, polyline

@@ -16,9 +16,9 @@ from wrinkle_cad.report.material import Limits, smallest_bend_radius
 from wrinkle_cad.report.verdict import judge
 from wrinkle_cad.report.views import MeshView, StripView
 from wrinkle_cad.strip.convexity import validity_matrix
+from wrinkle_cad.strip.flat.unrolling import unroll
 from wrinkle_cad.strip.gaps import find_gaps
 from wrinkle_cad.strip.triangulation import triangulate
-from wrinkle_cad.strip.unrolling import unroll
 
 Rail = NDArray[np.float64]
 

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from wrinkle_cad.strip.sampling import sample_curve
+from wrinkle_cad.strip.curve.sampling import sample_curve
 
 Floats = npt.NDArray[np.float64]
 Curve = Callable[[Floats], Floats]

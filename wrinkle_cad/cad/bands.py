@@ -18,8 +18,8 @@ from OCP.TopoDS import TopoDS_Edge, TopoDS_Shell
 
 from wrinkle_cad import settings
 from wrinkle_cad.errors import InputError
+from wrinkle_cad.strip.curve.sampling import Samples
 from wrinkle_cad.strip.sampled_strip import SampledStrip
-from wrinkle_cad.strip.sampling import Samples
 from wrinkle_cad.strip.triangulation import Triangulation, triangulate
 
 from .border import edge_ends

@@ -27,7 +27,7 @@ from .kernel import kernel_step
 from .splines import make_curve
 
 if TYPE_CHECKING:
-    from wrinkle_cad.strip.sampling import Samples
+    from wrinkle_cad.strip.curve.sampling import Samples
 
 Floats = NDArray[np.float64]
 _Measure = Callable[[PoleCurve, Floats], Floats]
@@ -253,7 +253,7 @@ def sample_directrix(
         InputError: a tolerance or ``max_chord`` that is not positive, or too fine.
     """
     # Compiled code is loaded when it is needed, not when a file is read.
-    from wrinkle_cad.strip.sampling import Samples, sample_curve
+    from wrinkle_cad.strip.curve.sampling import Samples, sample_curve
 
     if directrix.is_polyline:
         (piece,) = directrix.pieces

@@ -19,7 +19,7 @@ from OCP.TopoDS import TopoDS_Shape, TopoDS_Shell
 
 from wrinkle_cad import settings
 from wrinkle_cad.errors import CadError, InputError
-from wrinkle_cad.strip.sampling import Samples
+from wrinkle_cad.strip.curve.sampling import Samples
 from wrinkle_cad.strip.triangulation import P_STEP, Triangulation
 
 from .borders import Border, flipped

@@ -12,7 +12,7 @@ from OCP.TopoDS import TopoDS_Vertex
 
 from wrinkle_cad import settings
 from wrinkle_cad.errors import CadError
-from wrinkle_cad.strip.sampling import Samples
+from wrinkle_cad.strip.curve.sampling import Samples
 from wrinkle_cad.strip.triangulation import P_STEP, Triangulation
 
 from .borders import Border, border_poles, curved_edge, flipped, loosen, straight_edge, sub_curve

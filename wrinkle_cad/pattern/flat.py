@@ -14,8 +14,8 @@ from .options import Direction
 from .piece import Floats, frozen
 
 if TYPE_CHECKING:
+    from wrinkle_cad.strip.flat.unrolling import Unrolling
     from wrinkle_cad.strip.triangulation import Triangulation
-    from wrinkle_cad.strip.unrolling import Unrolling
 
 Indices = npt.NDArray[np.int64]
 

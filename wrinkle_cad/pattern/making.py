@@ -21,8 +21,8 @@ from .placing import placed_notches, seam_arcs, seam_corners
 from .splitting import non_overlapping_runs, overlaps
 
 if TYPE_CHECKING:
+    from wrinkle_cad.strip.flat.unrolling import Unrolling
     from wrinkle_cad.strip.triangulation import Triangulation
-    from wrinkle_cad.strip.unrolling import Unrolling
 
 
 def make_pieces(

@@ -13,8 +13,8 @@ from numpy.typing import NDArray
 from wrinkle_cad import settings
 from wrinkle_cad.pattern.options import P_SIDE, Q_SIDE
 from wrinkle_cad.pattern.piece import PatternPiece
+from wrinkle_cad.strip.flat.unrolling import Unrolling
 from wrinkle_cad.strip.triangulation import Triangulation
-from wrinkle_cad.strip.unrolling import Unrolling
 
 
 def rail_line(piece: PatternPiece, side: int) -> NDArray[np.float64]:

@@ -16,9 +16,9 @@ from numpy.typing import ArrayLike, NDArray
 
 from wrinkle_cad.errors import InputError
 from wrinkle_cad.pattern.piece import PatternPiece
+from wrinkle_cad.strip.flat.unrolling import Unrolling
 from wrinkle_cad.strip.gaps import Gap
 from wrinkle_cad.strip.triangulation import Triangulation
-from wrinkle_cad.strip.unrolling import Unrolling
 
 from .flat import bridge_ends
 from .matrix import matrix_pictures

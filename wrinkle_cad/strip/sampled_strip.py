@@ -5,7 +5,8 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Protocol
 
 if TYPE_CHECKING:
-    from .sampling import Samples
+    from wrinkle_cad.strip.curve.sampling import Samples
+
     from .triangulation import Triangulation
 
 

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from scipy.interpolate import BSpline
 
 from wrinkle_cad.errors import InputError
-from wrinkle_cad.strip.sampling import Samples, sample_curve
+from wrinkle_cad.strip.curve.sampling import Samples, sample_curve
 
 FloatArray = NDArray[np.float64]
 Curve = Callable[[FloatArray], FloatArray]

@@ -5,7 +5,7 @@ import pytest
 from scipy.interpolate import BSpline
 
 from wrinkle_cad.errors import InputError
-from wrinkle_cad.strip.chebyshev import Cells, FloatArray, fit_cells, point_in_cells
+from wrinkle_cad.strip.curve.chebyshev import Cells, FloatArray, fit_cells, point_in_cells
 
 
 def wavy(t: FloatArray) -> FloatArray:

@@ -17,8 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from wrinkle_cad.errors import InputError
-
-from .compiled import compiled
+from wrinkle_cad.strip.compiled import compiled
 
 FloatArray = NDArray[np.float64]
 PointAt = Callable[[FloatArray], FloatArray]

@@ -5,9 +5,9 @@ import pytest
 from numpy.typing import NDArray
 from shapely import Polygon, union_all
 
-from wrinkle_cad.strip.overlap import is_overlapping
+from wrinkle_cad.strip.flat.overlap import is_overlapping
+from wrinkle_cad.strip.flat.unrolling import unroll
 from wrinkle_cad.strip.triangulation import Triangulation, triangulate
-from wrinkle_cad.strip.unrolling import unroll
 
 FloatArray = NDArray[np.float64]
 

@@ -14,8 +14,8 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from .chebyshev import FloatArray
-from .compiled import compiled
+from wrinkle_cad.strip.compiled import compiled
+from wrinkle_cad.strip.curve.chebyshev import FloatArray
 
 TOUCHING: Final = 1e-10
 """A share of the outline's size: points closer than that to a line lie on it."""

@@ -10,9 +10,9 @@ from scipy.integrate import quad
 from scipy.interpolate import BSpline
 
 from wrinkle_cad.errors import InputError
-from wrinkle_cad.strip.sampling import Samples, sample_curve
+from wrinkle_cad.strip.curve.sampling import Samples, sample_curve
+from wrinkle_cad.strip.flat.unrolling import Unrolling, unroll, unroll_cones
 from wrinkle_cad.strip.triangulation import P_STEP, Triangulation, measured, triangulate
-from wrinkle_cad.strip.unrolling import Unrolling, unroll, unroll_cones
 
 FloatArray = NDArray[np.float64]
 Curve = Callable[[FloatArray], FloatArray]

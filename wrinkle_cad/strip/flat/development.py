@@ -13,8 +13,8 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from .chebyshev import DEGREE, Cells, FloatArray, point_in_cell
-from .compiled import compiled
+from wrinkle_cad.strip.compiled import compiled
+from wrinkle_cad.strip.curve.chebyshev import DEGREE, Cells, FloatArray, point_in_cell
 
 IndexArray = NDArray[np.int64]
 Pair = tuple[float, float]

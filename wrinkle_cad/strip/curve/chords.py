@@ -15,8 +15,9 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
+from wrinkle_cad.strip.compiled import compiled
+
 from .chebyshev import FloatArray, point_in_cell, point_in_cells
-from .compiled import compiled
 
 IndexArray = NDArray[np.int64]
 

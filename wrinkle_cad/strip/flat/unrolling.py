@@ -10,12 +10,12 @@ from numpy.typing import NDArray
 
 from wrinkle_cad.errors import InputError
 from wrinkle_cad.settings import TURNED_BACK_PER_TOLERANCE, UNROLLING_ACCURACY
+from wrinkle_cad.strip.curve.chebyshev import FloatArray, PointAt, fit_cells
+from wrinkle_cad.strip.curve.sampling import Samples
+from wrinkle_cad.strip.triangulation import P_STEP, Triangulation
 
-from .chebyshev import FloatArray, PointAt, fit_cells
 from .development import THINNING_SHARE, DevelopedRail, develop_rail, place_chain, thinned
 from .overlap import is_overlapping
-from .sampling import Samples
-from .triangulation import P_STEP, Triangulation
 
 IndexArray = NDArray[np.int64]
 

@@ -1,0 +1,1 @@
+"""One rail: its curve as polynomials, chords to a tolerance, samples."""

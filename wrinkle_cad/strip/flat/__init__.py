@@ -1,0 +1,1 @@
+"""The strip in the plane: facets and cones unrolled, and whether the result covers itself."""
