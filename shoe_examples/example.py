@@ -45,7 +45,7 @@ def draw_pattern(folder: Path) -> None:
 
     from wrinkle_cad import PieceSettings
     from wrinkle_cad.cut_pattern import pattern_of_strips
-    from wrinkle_cad.pattern.options import NotchRule
+    from wrinkle_cad.pattern.piece.options import NotchRule
     from wrinkle_cad.report.figures import plot_pattern
 
     result = stitched_upper(folder)

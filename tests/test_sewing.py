@@ -19,7 +19,7 @@ from wrinkle_cad.cad.shapes import CadFile
 from wrinkle_cad.job import Job, make_job
 from wrinkle_cad.job_parts import limits_of, piece_settings_of
 from wrinkle_cad.outcome import JobDone
-from wrinkle_cad.pattern.piece import PatternPiece
+from wrinkle_cad.pattern.piece.piece import PatternPiece
 from wrinkle_cad.workflow import run_job
 from wrinkle_cad.wrinkled_upper import wrinkle_upper
 

@@ -16,7 +16,7 @@ _MODULE_OF: Final = {
     "WrinkleStrip": "wrinkle",
     "StripReport": "strip_report",
     "Pattern": "cut_pattern",
-    "PieceSettings": "pattern.options",
+    "PieceSettings": "pattern.piece.options",
     "read_cad": "cad.read",
     "carve": "cad.carve",
     "Opening": "cad.opening",

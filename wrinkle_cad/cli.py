@@ -221,7 +221,7 @@ def _compare(given: argparse.Namespace) -> int:
 
 
 def _check(given: argparse.Namespace) -> int:
-    from wrinkle_cad.pattern.check import judge_dxf
+    from wrinkle_cad.pattern.check.judging import judge_dxf
     from wrinkle_cad.screen import one_line
 
     report = judge_dxf(given.input, cut_layers=tuple(given.cut_layer))

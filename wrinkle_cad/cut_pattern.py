@@ -9,17 +9,17 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Protocol
 
 from wrinkle_cad.findings import Finding
-from wrinkle_cad.pattern.making import make_pieces, rail_corners
-from wrinkle_cad.pattern.nesting import laid_out
-from wrinkle_cad.pattern.options import NotchRule, PieceSettings
-from wrinkle_cad.pattern.piece import PatternPiece
+from wrinkle_cad.pattern.piece.making import make_pieces, rail_corners
+from wrinkle_cad.pattern.piece.options import NotchRule, PieceSettings
+from wrinkle_cad.pattern.piece.piece import PatternPiece
+from wrinkle_cad.pattern.piece.stacking import laid_out
 from wrinkle_cad.strip.sampled_strip import SampledStrip
 
 from . import settings
 
 if TYPE_CHECKING:
-    from wrinkle_cad.pattern.contours import Curves
-    from wrinkle_cad.pattern.dxf import DxfVersion
+    from wrinkle_cad.pattern.formats.contours import Curves
+    from wrinkle_cad.pattern.formats.dxf import DxfVersion
     from wrinkle_cad.strip.flat.unrolling import Unrolling
 
 
@@ -96,7 +96,7 @@ class Pattern:
             InputError: an unknown profile or version.
             ExportError: the file could not be written; what stood there before is untouched.
         """
-        from wrinkle_cad.pattern.dxf import write_dxf
+        from wrinkle_cad.pattern.formats.dxf import write_dxf
 
         return write_dxf(
             Path(path),
@@ -119,7 +119,7 @@ class Pattern:
             InputError: an unknown profile.
             ExportError: the file could not be written; what stood there before is untouched.
         """
-        from wrinkle_cad.pattern.svg import write_svg
+        from wrinkle_cad.pattern.formats.svg import write_svg
 
         return write_svg(Path(path), self.pieces, profile=profile)
 
@@ -135,7 +135,7 @@ class Pattern:
             InputError: an unknown profile.
             ExportError: the file could not be written; what stood there before is untouched.
         """
-        from wrinkle_cad.pattern.pdf import write_pdf
+        from wrinkle_cad.pattern.formats.pdf import write_pdf
 
         return write_pdf(Path(path), self.pieces, profile=profile)
 

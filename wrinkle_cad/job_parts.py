@@ -19,9 +19,9 @@ if TYPE_CHECKING:
     from wrinkle_cad.cad.choose import Chosen
     from wrinkle_cad.cad.shapes import CadFile
     from wrinkle_cad.cut_pattern import Pattern
-    from wrinkle_cad.pattern.contours import Curves
-    from wrinkle_cad.pattern.dxf import DxfVersion
-    from wrinkle_cad.pattern.options import PieceSettings
+    from wrinkle_cad.pattern.formats.contours import Curves
+    from wrinkle_cad.pattern.formats.dxf import DxfVersion
+    from wrinkle_cad.pattern.piece.options import PieceSettings
     from wrinkle_cad.report.material import Limits
     from wrinkle_cad.wrinkle import WrinkleStrip
 
@@ -107,7 +107,7 @@ def piece_settings_of(job: Job, limits: Limits) -> PieceSettings:
     Raises:
         InputError: a setting does not fit a piece.
     """
-    from wrinkle_cad.pattern.options import NotchRule, PieceSettings
+    from wrinkle_cad.pattern.piece.options import NotchRule, PieceSettings
 
     def rule(at: tuple[float, ...]) -> NotchRule:
         if at:

@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
     from wrinkle_cad.cad.directrix import Directrix
     from wrinkle_cad.cut_pattern import Pattern
-    from wrinkle_cad.pattern.options import PieceSettings
+    from wrinkle_cad.pattern.piece.options import PieceSettings
     from wrinkle_cad.strip.curve.sampling import Samples
 
 
@@ -230,7 +230,7 @@ class TriangulatedStrip:
                 option is unknown or out of its range.
         """
         from wrinkle_cad.cut_pattern import pattern_of_strips
-        from wrinkle_cad.pattern.options import PieceSettings
+        from wrinkle_cad.pattern.piece.options import PieceSettings
 
         known = PieceSettings.__dataclass_fields__
         for name in options:

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from wrinkle_cad.pattern.making import make_piece
-from wrinkle_cad.pattern.options import PieceSettings
+from wrinkle_cad.pattern.piece.making import make_piece
+from wrinkle_cad.pattern.piece.options import PieceSettings
 
 from . import strips
 

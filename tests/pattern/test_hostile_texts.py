@@ -6,13 +6,13 @@ import xml.etree.ElementTree as ET
 
 import pytest
 
-from wrinkle_cad.pattern.check import judge_dxf
-from wrinkle_cad.pattern.dxf import dxf_file
-from wrinkle_cad.pattern.making import make_pieces
-from wrinkle_cad.pattern.options import PieceSettings
-from wrinkle_cad.pattern.pdf import pdf_file
-from wrinkle_cad.pattern.plain_text import LONGEST_TEXT, ascii_name, ascii_text
-from wrinkle_cad.pattern.svg import svg_bytes, write_svg
+from wrinkle_cad.pattern.check.judging import judge_dxf
+from wrinkle_cad.pattern.formats.dxf import dxf_file
+from wrinkle_cad.pattern.formats.pdf import pdf_file
+from wrinkle_cad.pattern.formats.plain_text import LONGEST_TEXT, ascii_name, ascii_text
+from wrinkle_cad.pattern.formats.svg import svg_bytes, write_svg
+from wrinkle_cad.pattern.piece.making import make_pieces
+from wrinkle_cad.pattern.piece.options import PieceSettings
 
 from . import strips
 from .group_codes import read_group_codes

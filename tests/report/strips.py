@@ -9,8 +9,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from wrinkle_cad.pattern.making import make_pieces
-from wrinkle_cad.pattern.options import NotchRule, PieceSettings
+from wrinkle_cad.pattern.piece.making import make_pieces
+from wrinkle_cad.pattern.piece.options import NotchRule, PieceSettings
 from wrinkle_cad.report.gap_list import gap_entry
 from wrinkle_cad.report.material import Limits, smallest_bend_radius
 from wrinkle_cad.report.verdict import judge

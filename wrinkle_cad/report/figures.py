@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 from numpy.typing import NDArray
 
-from wrinkle_cad.pattern.piece import PatternPiece
+from wrinkle_cad.pattern.piece.piece import PatternPiece
 from wrinkle_cad.strip.triangulation import Triangulation
 
 if TYPE_CHECKING:

@@ -11,8 +11,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from wrinkle_cad import settings
-from wrinkle_cad.pattern.options import P_SIDE, Q_SIDE
-from wrinkle_cad.pattern.piece import PatternPiece
+from wrinkle_cad.pattern.piece.options import P_SIDE, Q_SIDE
+from wrinkle_cad.pattern.piece.piece import PatternPiece
 from wrinkle_cad.strip.flat.unrolling import Unrolling
 from wrinkle_cad.strip.triangulation import Triangulation
 

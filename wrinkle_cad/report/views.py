@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from wrinkle_cad.errors import InputError
-from wrinkle_cad.pattern.piece import PatternPiece
+from wrinkle_cad.pattern.piece.piece import PatternPiece
 from wrinkle_cad.strip.flat.unrolling import Unrolling
 from wrinkle_cad.strip.gaps import Gap
 from wrinkle_cad.strip.triangulation import Triangulation

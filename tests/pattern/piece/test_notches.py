@@ -5,9 +5,9 @@ import pytest
 import shapely
 
 from wrinkle_cad.errors import InputError
-from wrinkle_cad.pattern.making import make_pieces
-from wrinkle_cad.pattern.notches import corner_arcs, notch_arcs
-from wrinkle_cad.pattern.options import NotchRule, PieceSettings
+from wrinkle_cad.pattern.piece.making import make_pieces
+from wrinkle_cad.pattern.piece.notches import corner_arcs, notch_arcs
+from wrinkle_cad.pattern.piece.options import NotchRule, PieceSettings
 
 from . import strips
 
@@ -119,7 +119,7 @@ def test_no_notch_stands_on_a_kink_of_its_rail():
 
 
 def test_the_forms_of_notches_have_their_depth_and_width():
-    from wrinkle_cad.pattern.drawing import notch_lines
+    from wrinkle_cad.pattern.formats.drawing import notch_lines
 
     for kind in ("slit", "v", "t", "castle", "check", "u"):
         settings = PieceSettings(

@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 import shapely
 
-from wrinkle_cad.pattern.allowance import cut_outline
-from wrinkle_cad.pattern.making import make_pieces
-from wrinkle_cad.pattern.options import PieceSettings
-from wrinkle_cad.pattern.piece import make_outline
+from wrinkle_cad.pattern.piece.allowance import cut_outline
+from wrinkle_cad.pattern.piece.making import make_pieces
+from wrinkle_cad.pattern.piece.options import PieceSettings
+from wrinkle_cad.pattern.piece.piece import make_outline
 
 from . import strips
 

@@ -20,11 +20,11 @@ from wrinkle_cad import settings
 from wrinkle_cad.errors import ExportError, InputError
 from wrinkle_cad.files.atomic import write_atomically
 from wrinkle_cad.findings import Finding
+from wrinkle_cad.pattern.piece.piece import Floats, PatternPiece
+from wrinkle_cad.pattern.piece.stacking import laid_out
 
 from .drawing import Drawing, draw
 from .layers import LINE_TYPES, Profile, profile_from
-from .nesting import laid_out
-from .piece import Floats, PatternPiece
 from .plain_text import ascii_text, text_changed
 from .svg import colour_of
 

@@ -12,10 +12,10 @@ import numpy as np
 import shapely
 
 from wrinkle_cad import settings
+from wrinkle_cad.pattern.piece.options import NotchKind
+from wrinkle_cad.pattern.piece.piece import Floats, Notch, PatternPiece, frozen
 
 from .layers import Role
-from .options import NotchKind
-from .piece import Floats, Notch, PatternPiece, frozen
 
 
 @dataclass(frozen=True, slots=True, eq=False)

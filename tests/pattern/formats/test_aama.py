@@ -8,9 +8,9 @@ from datetime import datetime
 
 import pytest
 
-from wrinkle_cad.pattern.dxf import dxf_bytes
-from wrinkle_cad.pattern.making import make_pieces
-from wrinkle_cad.pattern.options import NotchRule, PieceSettings
+from wrinkle_cad.pattern.formats.dxf import dxf_bytes
+from wrinkle_cad.pattern.piece.making import make_pieces
+from wrinkle_cad.pattern.piece.options import NotchRule, PieceSettings
 
 from . import strips
 from .group_codes import area_of, read_group_codes

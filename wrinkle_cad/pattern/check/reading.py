@@ -21,8 +21,7 @@ from ezdxf.path import make_path
 
 from wrinkle_cad import settings
 from wrinkle_cad.errors import InputError
-
-from .piece import Bools, Floats, frozen
+from wrinkle_cad.pattern.piece.piece import Bools, Floats, frozen
 
 ENTITIES: Final = "ENTITIES"
 """The space of what does not stand in a block."""

@@ -16,10 +16,9 @@ import shapely
 from ezdxf.math import BSpline
 
 from wrinkle_cad import settings
-
-from .flat import Indices
-from .outline import closed_turns
-from .piece import Floats
+from wrinkle_cad.pattern.piece.flat import Indices
+from wrinkle_cad.pattern.piece.outline import closed_turns
+from wrinkle_cad.pattern.piece.piece import Floats
 
 Curves = Literal["lines", "arcs", "splines"]
 

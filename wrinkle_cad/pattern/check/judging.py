@@ -18,8 +18,8 @@ import numpy as np
 from wrinkle_cad import settings
 from wrinkle_cad.findings import Finding, Severity
 
-from .check_contours import judge_contours
-from .check_pieces import judge_pieces
+from .contours import judge_contours
+from .pieces import judge_pieces
 from .reading import DxfContent, FileLine, FileMark, read_dxf, repeated_vertices
 
 _UNIT_NAMES: Final = {0: "none", 1: "inches", 2: "feet", 4: "mm", 5: "cm", 6: "m", 13: "microns"}

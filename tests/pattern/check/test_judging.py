@@ -8,10 +8,10 @@ import ezdxf
 import pytest
 
 from wrinkle_cad.errors import InputError
-from wrinkle_cad.pattern.check import judge_dxf
-from wrinkle_cad.pattern.dxf import dxf_bytes
-from wrinkle_cad.pattern.making import make_pieces
-from wrinkle_cad.pattern.options import NotchRule, PieceSettings
+from wrinkle_cad.pattern.check.judging import judge_dxf
+from wrinkle_cad.pattern.formats.dxf import dxf_bytes
+from wrinkle_cad.pattern.piece.making import make_pieces
+from wrinkle_cad.pattern.piece.options import NotchRule, PieceSettings
 
 from . import strips
 

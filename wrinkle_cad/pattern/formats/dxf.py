@@ -23,13 +23,13 @@ from wrinkle_cad import settings
 from wrinkle_cad.errors import ExportError, InputError
 from wrinkle_cad.files.atomic import write_atomically
 from wrinkle_cad.findings import Finding
+from wrinkle_cad.pattern.piece.piece import PatternPiece
+from wrinkle_cad.pattern.piece.stacking import laid_out
 
 from .aama import block_document, scale_piece
 from .contours import Curves
 from .cutter import cutter_document
 from .layers import Profile, profile_from
-from .nesting import laid_out
-from .piece import PatternPiece
 from .stamping import EPOCH, stamped
 
 DxfVersion = Literal["R12", "R2000", "R2010"]

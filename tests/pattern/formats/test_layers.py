@@ -3,11 +3,11 @@ from __future__ import annotations
 import pytest
 
 from wrinkle_cad.errors import InputError
-from wrinkle_cad.pattern.check import judge_dxf
-from wrinkle_cad.pattern.dxf import dxf_bytes, write_dxf
-from wrinkle_cad.pattern.layers import PROFILES, ROLES, profile_from
-from wrinkle_cad.pattern.making import make_pieces
-from wrinkle_cad.pattern.options import NotchRule, PieceSettings
+from wrinkle_cad.pattern.check.judging import judge_dxf
+from wrinkle_cad.pattern.formats.dxf import dxf_bytes, write_dxf
+from wrinkle_cad.pattern.formats.layers import PROFILES, ROLES, profile_from
+from wrinkle_cad.pattern.piece.making import make_pieces
+from wrinkle_cad.pattern.piece.options import NotchRule, PieceSettings
 
 from . import strips
 from .group_codes import read_group_codes

@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 import shapely
 
-from wrinkle_cad.pattern.contours import closed_spline, with_arcs
-from wrinkle_cad.pattern.making import make_pieces
-from wrinkle_cad.pattern.options import PieceSettings
+from wrinkle_cad.pattern.formats.contours import closed_spline, with_arcs
+from wrinkle_cad.pattern.piece.making import make_pieces
+from wrinkle_cad.pattern.piece.options import PieceSettings
 
 from . import strips
 

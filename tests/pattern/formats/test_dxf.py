@@ -10,10 +10,10 @@ import numpy as np
 import pytest
 
 from wrinkle_cad.errors import ExportError, InputError
-from wrinkle_cad.pattern.check import judge_dxf
-from wrinkle_cad.pattern.dxf import dxf_bytes, dxf_file, write_dxf
-from wrinkle_cad.pattern.making import make_pieces
-from wrinkle_cad.pattern.options import NotchRule, PieceSettings
+from wrinkle_cad.pattern.check.judging import judge_dxf
+from wrinkle_cad.pattern.formats.dxf import dxf_bytes, dxf_file, write_dxf
+from wrinkle_cad.pattern.piece.making import make_pieces
+from wrinkle_cad.pattern.piece.options import NotchRule, PieceSettings
 
 from . import strips
 from .group_codes import area_of, perimeter_of, read_group_codes

@@ -15,11 +15,11 @@ from ezdxf.layouts import Modelspace
 
 from wrinkle_cad import settings
 from wrinkle_cad.findings import Finding
+from wrinkle_cad.pattern.piece.piece import Floats, PatternPiece
 
 from .contours import Curves, closed_spline, with_arcs
 from .drawing import Drawing, Stroke, draw
 from .layers import LINE_TYPES, LayerStyle, Profile, Role
-from .piece import Floats, PatternPiece
 from .plain_text import ascii_text, text_changed
 
 

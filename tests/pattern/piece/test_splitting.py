@@ -7,10 +7,10 @@ import pytest
 import shapely
 
 from wrinkle_cad.errors import InputError
-from wrinkle_cad.pattern.flat import flat_strip
-from wrinkle_cad.pattern.making import make_piece, make_pieces
-from wrinkle_cad.pattern.options import END_SIDE, START_SIDE, NotchRule, PieceSettings
-from wrinkle_cad.pattern.splitting import overlaps
+from wrinkle_cad.pattern.piece.flat import flat_strip
+from wrinkle_cad.pattern.piece.making import make_piece, make_pieces
+from wrinkle_cad.pattern.piece.options import END_SIDE, START_SIDE, NotchRule, PieceSettings
+from wrinkle_cad.pattern.piece.splitting import overlaps
 
 from . import strips
 

@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 
 from wrinkle_cad.errors import ExportError, InputError
-from wrinkle_cad.pattern.making import make_pieces
-from wrinkle_cad.pattern.options import PieceSettings
-from wrinkle_cad.pattern.pdf import pdf_file, write_pdf
+from wrinkle_cad.pattern.formats.pdf import pdf_file, write_pdf
+from wrinkle_cad.pattern.piece.making import make_pieces
+from wrinkle_cad.pattern.piece.options import PieceSettings
 
 from . import strips
 from .test_dxf import FULL

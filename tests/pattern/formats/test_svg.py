@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from wrinkle_cad.errors import ExportError, InputError
-from wrinkle_cad.pattern.making import make_pieces
-from wrinkle_cad.pattern.nesting import laid_out
-from wrinkle_cad.pattern.svg import svg_bytes, write_svg
+from wrinkle_cad.pattern.formats.svg import svg_bytes, write_svg
+from wrinkle_cad.pattern.piece.making import make_pieces
+from wrinkle_cad.pattern.piece.stacking import laid_out
 
 from . import strips
 from .group_codes import area_of

@@ -3,8 +3,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from wrinkle_cad.pattern.making import make_piece
-from wrinkle_cad.pattern.options import PieceSettings
+from wrinkle_cad.pattern.piece.making import make_piece
+from wrinkle_cad.pattern.piece.options import PieceSettings
 from wrinkle_cad.strip import triangulate, unroll
 
 from . import strips
@@ -66,7 +66,7 @@ def test_a_flat_strip_does_not_change_with_its_thickness():
 
 
 def test_notches_stay_at_the_arc_lengths_of_the_surface():
-    from wrinkle_cad.pattern.options import NotchRule
+    from wrinkle_cad.pattern.piece.options import NotchRule
 
     made = strips.cylinder(RADIUS, ANGLE, WIDTH, 60)
     thin, thick = (

@@ -21,12 +21,12 @@ from ezdxf.layouts import BlockLayout
 
 from wrinkle_cad import settings
 from wrinkle_cad.findings import Finding
+from wrinkle_cad.pattern.piece.options import NotchKind
+from wrinkle_cad.pattern.piece.outline import closed_turns
+from wrinkle_cad.pattern.piece.piece import Bools, Floats, PatternPiece, frozen, make_outline
 
 from .cutter import rounded
 from .layers import LayerStyle, Profile, Role
-from .options import NotchKind
-from .outline import closed_turns
-from .piece import Bools, Floats, PatternPiece, frozen, make_outline
 from .plain_text import ascii_name, ascii_text, text_changed
 
 TURN_POINTS: Final = "2"

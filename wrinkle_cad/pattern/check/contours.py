@@ -9,8 +9,8 @@ import shapely
 
 from wrinkle_cad import settings
 from wrinkle_cad.findings import Finding
+from wrinkle_cad.pattern.piece.piece import Floats
 
-from .piece import Floats
 from .reading import FileLine
 
 

@@ -5,9 +5,9 @@ import pytest
 import shapely
 
 from wrinkle_cad.errors import InputError
-from wrinkle_cad.pattern.making import make_piece, make_pieces
-from wrinkle_cad.pattern.nesting import laid_out
-from wrinkle_cad.pattern.options import SIDES, NotchRule, PieceSettings
+from wrinkle_cad.pattern.piece.making import make_piece, make_pieces
+from wrinkle_cad.pattern.piece.options import SIDES, NotchRule, PieceSettings
+from wrinkle_cad.pattern.piece.stacking import laid_out
 
 from . import strips
 
@@ -223,7 +223,7 @@ def test_a_hole_outside_the_piece_is_refused():
 
 
 def test_texts_stay_inside_the_piece_unless_it_is_too_narrow_for_the_smallest():
-    from wrinkle_cad.pattern.drawing import draw
+    from wrinkle_cad.pattern.formats.drawing import draw
 
     sizes = []
     for made in (

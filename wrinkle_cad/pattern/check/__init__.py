@@ -1,0 +1,1 @@
+"""Another program's DXF: read as plain lines and judged before it is cut."""

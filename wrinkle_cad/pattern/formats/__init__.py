@@ -1,0 +1,1 @@
+"""Pieces as files: DXF in every profile, SVG, PDF."""
