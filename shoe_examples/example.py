@@ -6,10 +6,10 @@ import sys
 from collections.abc import Sequence
 from pathlib import Path
 
-from wrinkle_cad.cad.choose import choose_inputs
-from wrinkle_cad.cad.read import read_cad
-from wrinkle_cad.cad.shapes import Part
-from wrinkle_cad.cad.write import write_step
+from wrinkle_cad.cad.exchange.choose import choose_inputs
+from wrinkle_cad.cad.exchange.read import read_cad
+from wrinkle_cad.cad.exchange.shapes import Part
+from wrinkle_cad.cad.exchange.write import write_step
 from wrinkle_cad.job import make_job
 from wrinkle_cad.wrinkled_upper import WrinkledUpper, wrinkle_upper
 

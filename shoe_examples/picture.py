@@ -13,7 +13,7 @@ from OCP.TopAbs import TopAbs_REVERSED
 from OCP.TopLoc import TopLoc_Location
 from OCP.TopoDS import TopoDS_Face
 
-from wrinkle_cad.cad.kernel import make_compound
+from wrinkle_cad.cad.kernel.topology import make_compound
 
 VIEWS = ((32.0, -58.0), (38.0, 62.0))
 """Elevation and azimuth in degrees: from the outer and from the inner side, over the toe."""

@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 from wrinkle_cad import Pattern, PieceSettings, WrinkleStrip
-from wrinkle_cad.cad.choose import choose_inputs
-from wrinkle_cad.cad.read import read_cad
+from wrinkle_cad.cad.exchange.choose import choose_inputs
+from wrinkle_cad.cad.exchange.read import read_cad
 from wrinkle_cad.cut_pattern import pattern_of_strips
 from wrinkle_cad.job import Job
 from wrinkle_cad.job_parts import limits_of, piece_settings_of

@@ -11,11 +11,17 @@ import pytest
 from numpy.typing import NDArray
 from OCP.TopoDS import TopoDS_Edge
 
-from wrinkle_cad.cad.directrix import Directrix, make_directrix
-from wrinkle_cad.cad.kernel import edges_of, faces_of, make_compound, vertex_point, vertices_of
-from wrinkle_cad.cad.read import read_cad
-from wrinkle_cad.cad.shape_index import ShapeIndex
-from wrinkle_cad.cad.shapes import CadFile
+from wrinkle_cad.cad.exchange.read import read_cad
+from wrinkle_cad.cad.exchange.shapes import CadFile
+from wrinkle_cad.cad.kernel.shape_index import ShapeIndex
+from wrinkle_cad.cad.kernel.topology import (
+    edges_of,
+    faces_of,
+    make_compound,
+    vertex_point,
+    vertices_of,
+)
+from wrinkle_cad.cad.rail.directrix import Directrix, make_directrix
 from wrinkle_cad.job import Job, make_job
 from wrinkle_cad.job_parts import limits_of, piece_settings_of
 from wrinkle_cad.outcome import JobDone
@@ -40,7 +46,7 @@ class Sewn:
 
 
 def sewn(name: str, folder: Path) -> Sewn:
-    from wrinkle_cad.cad.choose import choose_inputs
+    from wrinkle_cad.cad.exchange.choose import choose_inputs
     from wrinkle_cad.cut_pattern import pattern_of_strips
 
     toml = EXAMPLES / name / "job.toml"

@@ -130,8 +130,8 @@ PAIRS = [
 def test_real_rails_become_a_valid_shell_that_survives_its_file(
     realdata: Path, tmp_path: Path, file: str, p: str, q: str
 ) -> None:
-    from wrinkle_cad.cad.kernel import area_of, faces_of, is_valid, tolerance_of
-    from wrinkle_cad.cad.read import read_cad
+    from wrinkle_cad.cad.exchange.read import read_cad
+    from wrinkle_cad.cad.kernel.topology import area_of, faces_of, is_valid, tolerance_of
 
     done = run(Job(input=realdata / file, output_dir=tmp_path, p=p, q=q))
     again = read_cad(next(path for path in done.outputs if path.suffix == ".step"))
@@ -174,7 +174,7 @@ def test_waves_on_an_upper_give_one_watertight_shell(designed: JobDone) -> None:
 
 
 def test_the_step_holds_the_shell_and_the_notches_by_name(designed: JobDone) -> None:
-    from wrinkle_cad.cad.read import read_cad
+    from wrinkle_cad.cad.exchange.read import read_cad
 
     shapes = read_cad(next(path for path in designed.outputs if path.suffix == ".step")).shapes
     assert [shape.kind for shape in shapes].count("shell") == 1
@@ -207,12 +207,12 @@ def test_the_stl_of_a_stitched_upper_is_open_at_the_uppers_border_only(
 
 
 def test_drawn_profiles_off_the_upper_are_stitched_as_they_are(tmp_path: Path) -> None:
-    from wrinkle_cad.cad.carve import carve
-    from wrinkle_cad.cad.guests import to_build123d
-    from wrinkle_cad.cad.profiles import wrinkle_profiles
-    from wrinkle_cad.cad.read import read_cad
-    from wrinkle_cad.cad.shapes import Part
-    from wrinkle_cad.cad.write import write_step
+    from wrinkle_cad.cad.build123d_objects import to_build123d
+    from wrinkle_cad.cad.exchange.read import read_cad
+    from wrinkle_cad.cad.exchange.shapes import Part
+    from wrinkle_cad.cad.exchange.write import write_step
+    from wrinkle_cad.cad.upper.carve import carve
+    from wrinkle_cad.cad.upper.profiles import wrinkle_profiles
 
     given = {shape.name: shape.shape for shape in read_cad(ON_UPPER).shapes}
     opening = carve(given["upper"], given["P"], given["Q"], margin=4)

@@ -68,7 +68,7 @@ class Pattern:
     @property
     def sketch(self) -> Any:
         """The cut lines as a build123d ``Sketch`` on XY."""
-        from wrinkle_cad.cad.guests import sketch_from_outline
+        from wrinkle_cad.cad.build123d_objects import sketch_from_outline
 
         return sketch_from_outline([piece.cut_line for piece in self.pieces])
 

@@ -6,13 +6,13 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from wrinkle_cad.cad.loading import kernel_importable
+from wrinkle_cad.cad.kernel.loading import kernel_importable
 from wrinkle_cad.errors import InputError
 
 from . import settings
 
 if TYPE_CHECKING:
-    from wrinkle_cad.cad.choose import Chosen
+    from wrinkle_cad.cad.exchange.choose import Chosen
 
 
 @dataclass(frozen=True, slots=True)
@@ -76,8 +76,8 @@ def inspect_file(
         InputError: the file cannot be read.
     """
     with kernel_importable():
-        from wrinkle_cad.cad.choose import choose_inputs
-        from wrinkle_cad.cad.read import read_cad
+        from wrinkle_cad.cad.exchange.choose import choose_inputs
+        from wrinkle_cad.cad.exchange.read import read_cad
     file = read_cad(path, unit=unit)
     chosen: Chosen | None = None
     try:

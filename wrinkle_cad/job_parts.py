@@ -8,7 +8,7 @@ from datetime import datetime
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, cast
 
-from wrinkle_cad.cad.loading import kernel_importable
+from wrinkle_cad.cad.kernel.loading import kernel_importable
 from wrinkle_cad.findings import Finding
 from wrinkle_cad.job import Job
 from wrinkle_cad.outputs import check_outputs_are_ours
@@ -16,8 +16,8 @@ from wrinkle_cad.outputs import check_outputs_are_ours
 from . import settings
 
 if TYPE_CHECKING:
-    from wrinkle_cad.cad.choose import Chosen
-    from wrinkle_cad.cad.shapes import CadFile
+    from wrinkle_cad.cad.exchange.choose import Chosen
+    from wrinkle_cad.cad.exchange.shapes import CadFile
     from wrinkle_cad.cut_pattern import Pattern
     from wrinkle_cad.pattern.formats.contours import Curves
     from wrinkle_cad.pattern.formats.dxf import DxfVersion
@@ -45,8 +45,8 @@ def read_chosen(job: Job, kinds: tuple[str, ...]) -> tuple[CadFile, Chosen]:
         CadError: the kernel cannot be loaded.
     """
     with kernel_importable():
-        from wrinkle_cad.cad.choose import choose_inputs
-        from wrinkle_cad.cad.read import read_cad
+        from wrinkle_cad.cad.exchange.choose import choose_inputs
+        from wrinkle_cad.cad.exchange.read import read_cad
     check_outputs_are_ours(job, kinds)
     file = read_cad(job.input, unit=job.unit)
     return file, choose_inputs(file, p=job.p, q=job.q, upper=job.upper)

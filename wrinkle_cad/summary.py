@@ -15,8 +15,8 @@ from wrinkle_cad.outputs import SCHEMA, SCHEMA_VERSION
 from wrinkle_cad.versions import installed_versions
 
 if TYPE_CHECKING:
-    from wrinkle_cad.cad.choose import Chosen
-    from wrinkle_cad.cad.shapes import CadFile
+    from wrinkle_cad.cad.exchange.choose import Chosen
+    from wrinkle_cad.cad.exchange.shapes import CadFile
     from wrinkle_cad.report.material import Limits
     from wrinkle_cad.strip_report import StripReport
 

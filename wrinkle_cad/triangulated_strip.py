@@ -24,7 +24,7 @@ from . import settings
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-    from wrinkle_cad.cad.directrix import Directrix
+    from wrinkle_cad.cad.rail.directrix import Directrix
     from wrinkle_cad.cut_pattern import Pattern
     from wrinkle_cad.pattern.piece.options import PieceSettings
     from wrinkle_cad.strip.curve.sampling import Samples
@@ -87,7 +87,7 @@ class TriangulatedStrip:
         kind = self.surface if surface is None else surface
         check_surface(kind)
         if kind not in self._shells:
-            from wrinkle_cad.cad.faces import build_shell
+            from wrinkle_cad.cad.faces.shell import build_shell
 
             self._shells[kind] = build_shell(
                 self.triangulation, self.p, self.q, self.p_samples, self.q_samples, kind
@@ -103,7 +103,7 @@ class TriangulatedStrip:
         Raises:
             CadError: the kernel could not build a valid shell.
         """
-        from wrinkle_cad.cad.guests import to_build123d
+        from wrinkle_cad.cad.build123d_objects import to_build123d
 
         return to_build123d(self.topods_shell(surface), label=self.name, color=self.color)
 
@@ -120,8 +120,8 @@ class TriangulatedStrip:
         Raises:
             InputError: an arc length lies beyond the edge.
         """
-        from wrinkle_cad.cad.directrix import make_directrix
-        from wrinkle_cad.cad.rail_points import points_at_arcs
+        from wrinkle_cad.cad.rail.directrix import make_directrix
+        from wrinkle_cad.cad.rail.rail_points import points_at_arcs
 
         curve, samples = (self.p, self.p_samples) if rail == "P" else (self.q, self.q_samples)
         if self.surface == "facets":
@@ -175,7 +175,7 @@ class TriangulatedStrip:
     @cached_property
     def report(self) -> StripReport:
         """The strip's numbers."""
-        from wrinkle_cad.cad.kernel import faces_of
+        from wrinkle_cad.cad.kernel.topology import faces_of
 
         return report_on(
             self.name,
@@ -202,7 +202,7 @@ class TriangulatedStrip:
     @cached_property
     def _measured_area(self) -> tuple[float, float]:
         """The area as exactly as it can be had: a sound strip does not fail for its last digits."""
-        from wrinkle_cad.cad.kernel import area_of
+        from wrinkle_cad.cad.kernel.topology import area_of
 
         *tried, coarsest = settings.AREA_RELATIVE_ERRORS
         for error in tried:
@@ -263,8 +263,8 @@ class TriangulatedStrip:
         Raises:
             ExportError: the file could not be written; what stood there before is untouched.
         """
-        from wrinkle_cad.cad.shapes import Part
-        from wrinkle_cad.cad.write import write_step
+        from wrinkle_cad.cad.exchange.shapes import Part
+        from wrinkle_cad.cad.exchange.write import write_step
 
         part = Part(self.topods_shell(), self.name, self.color)
         write_step(Path(path), [part], schema=schema)
@@ -275,7 +275,7 @@ class TriangulatedStrip:
         Raises:
             ExportError: the file could not be written; what stood there before is untouched.
         """
-        from wrinkle_cad.cad.write import write_stl
+        from wrinkle_cad.cad.exchange.write import write_stl
 
         write_stl(Path(path), self.topods_shell(), tolerance=self.tolerance)
 

@@ -18,8 +18,8 @@ from wrinkle_cad.summary import summary_of, to_json
 from . import settings
 
 if TYPE_CHECKING:
-    from wrinkle_cad.cad.choose import Chosen
-    from wrinkle_cad.cad.shapes import CadFile
+    from wrinkle_cad.cad.exchange.choose import Chosen
+    from wrinkle_cad.cad.exchange.shapes import CadFile
     from wrinkle_cad.strip_report import StripReport
     from wrinkle_cad.triangulated_strip import TriangulatedStrip
     from wrinkle_cad.writing import Made

@@ -4,7 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from wrinkle_cad.cad.directrix import check_distinct, make_directrix, orient_alike, sample_directrix
+from wrinkle_cad.cad.rail.directrix import (
+    check_distinct,
+    make_directrix,
+    orient_alike,
+    sample_directrix,
+)
 from wrinkle_cad.findings import Finding
 from wrinkle_cad.strip.triangulation import triangulate
 from wrinkle_cad.triangulated_strip import TriangulatedStrip, check_surface

@@ -15,11 +15,11 @@ from wrinkle_cad.wrinkle import WrinkleStrip
 from . import settings
 
 if TYPE_CHECKING:
-    from wrinkle_cad.cad.choose import Chosen, StripInput
-    from wrinkle_cad.cad.opening import Opening
-    from wrinkle_cad.cad.profiles import Direction
-    from wrinkle_cad.cad.shapes import NamedShape
-    from wrinkle_cad.cad.stitch import Stitched
+    from wrinkle_cad.cad.exchange.choose import Chosen, StripInput
+    from wrinkle_cad.cad.exchange.shapes import NamedShape
+    from wrinkle_cad.cad.upper.opening import Opening
+    from wrinkle_cad.cad.upper.profiles import Direction
+    from wrinkle_cad.cad.upper.stitch import Stitched
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -91,7 +91,7 @@ def wrinkle_upper(job: Job, chosen: Chosen) -> WrinkledUpper:
         InputError: a rail or a profile does not fit the upper.
         CadError: the parts do not become one valid shell.
     """
-    from wrinkle_cad.cad.stitch import stitch
+    from wrinkle_cad.cad.upper.stitch import stitch
 
     assert chosen.upper is not None
     body = chosen.upper.shape
@@ -109,7 +109,7 @@ def wrinkle_upper(job: Job, chosen: Chosen) -> WrinkledUpper:
 
 
 def _carved(job: Job, body: object, given: StripInput) -> Opening:
-    from wrinkle_cad.cad.carve import carve
+    from wrinkle_cad.cad.upper.carve import carve
 
     rails = (given.p.shape, given.q.shape)
     options: dict[str, Any] = {"fade": job.fade, "allow_split": job.allow_split}
@@ -127,11 +127,11 @@ def _profiles(job: Job, opening: Opening, given: StripInput) -> tuple[object, ob
     if job.waves is None or job.height is None:
         if opening.request.margin == 0.0 and max(opening.distances) <= job.tolerance:
             # Rails that lie on the upper within the tolerance are the opening's own boundary.
-            from wrinkle_cad.cad.bands import side_curve
+            from wrinkle_cad.cad.upper.bands import side_curve
 
             return side_curve(opening.p_edges, "P"), side_curve(opening.q_edges, "Q")
         return given.p.shape, given.q.shape
-    from wrinkle_cad.cad.profiles import profile_curves
+    from wrinkle_cad.cad.upper.profiles import profile_curves
 
     p_phase, q_phase = job.phase_deg or settings.WAVE_PHASES
     return profile_curves(

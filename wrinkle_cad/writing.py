@@ -15,7 +15,7 @@ from wrinkle_cad.triangulated_strip import TriangulatedStrip
 from . import settings
 
 if TYPE_CHECKING:
-    from wrinkle_cad.cad.shapes import Part
+    from wrinkle_cad.cad.exchange.shapes import Part
     from wrinkle_cad.cut_pattern import Pattern
     from wrinkle_cad.report.material import Limits
     from wrinkle_cad.report.views import MeshView
@@ -44,8 +44,8 @@ def write_shapes(job: Job, made: Made, paths: Mapping[str, Path]) -> None:
     Raises:
         ExportError: a file cannot be written.
     """
-    from wrinkle_cad.cad.kernel import make_compound
-    from wrinkle_cad.cad.write import write_step, write_stl
+    from wrinkle_cad.cad.exchange.write import write_step, write_stl
+    from wrinkle_cad.cad.kernel.topology import make_compound
 
     parts = _parts_of(made)
     everything = [*parts, *_notch_parts(made)]
@@ -100,11 +100,11 @@ def timestamp_of(job: Job) -> datetime.datetime:
 
 
 def _parts_of(made: Made) -> Sequence[Part]:
-    from wrinkle_cad.cad.shapes import Part
+    from wrinkle_cad.cad.exchange.shapes import Part
 
     if made.upper is None:
         return [Part(strip.topods_shell(), strip.name, strip.color) for strip in made.strips]
-    from wrinkle_cad.cad.stitched_part import stitched_part
+    from wrinkle_cad.cad.upper.stitched_part import stitched_part
 
     upper, colors = made.upper, {strip.name: strip.color for strip in made.strips}
     return [stitched_part(upper.stitched, upper.openings, upper.given, made.upper_name, colors)]
@@ -112,8 +112,8 @@ def _parts_of(made: Made) -> Sequence[Part]:
 
 def _notch_parts(made: Made) -> Iterator[Part]:
     """A named point for every notch, once for two pieces that are sewn together there."""
-    from wrinkle_cad.cad.kernel import make_vertex
-    from wrinkle_cad.cad.shapes import Part
+    from wrinkle_cad.cad.exchange.shapes import Part
+    from wrinkle_cad.cad.kernel.topology import make_vertex
 
     seen: set[int] = set()
     for index, strip in enumerate(made.strips):
@@ -134,8 +134,8 @@ def _body_view(made: Made) -> MeshView | None:
         return None
     import numpy as np
 
-    from wrinkle_cad.cad.kernel import make_compound
-    from wrinkle_cad.cad.mesh import mesh_of
+    from wrinkle_cad.cad.kernel.mesh import mesh_of
+    from wrinkle_cad.cad.kernel.topology import make_compound
     from wrinkle_cad.report.views import MeshView
 
     strips = {strip.name for strip in made.strips}

@@ -18,16 +18,17 @@ from OCP.STEPControl import STEPControl_AsIs, STEPControl_Reader, STEPControl_Wr
 from OCP.TopoDS import TopoDS_Face
 
 from wrinkle_cad import settings
-from wrinkle_cad.cad import carve as carving
-from wrinkle_cad.cad import kernel, splitting
-from wrinkle_cad.cad import stitch as stitching
-from wrinkle_cad.cad.outline import Side
-from wrinkle_cad.cad.profiles import profile_curves
-from wrinkle_cad.cad.read import read_cad
-from wrinkle_cad.cad.sewing import Sewn
-from wrinkle_cad.cad.shapes import Part
-from wrinkle_cad.cad.smooth import smooth_edge
-from wrinkle_cad.cad.write import write_step
+from wrinkle_cad.cad.exchange.read import read_cad
+from wrinkle_cad.cad.exchange.shapes import Part
+from wrinkle_cad.cad.exchange.write import write_step
+from wrinkle_cad.cad.kernel import topology as kernel
+from wrinkle_cad.cad.upper import carve as carving
+from wrinkle_cad.cad.upper import split as splitting
+from wrinkle_cad.cad.upper import stitch as stitching
+from wrinkle_cad.cad.upper.outline import Side
+from wrinkle_cad.cad.upper.profiles import profile_curves
+from wrinkle_cad.cad.upper.sew import Sewn
+from wrinkle_cad.cad.upper.smooth import smooth_edge
 from wrinkle_cad.wrinkle import WrinkleStrip
 
 INPUT = Path(__file__).parents[2] / "shoe_examples" / "one_wrinkle" / "one_wrinkle.step"

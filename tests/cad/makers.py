@@ -10,9 +10,9 @@ from OCP.BRepPrimAPI import BRepPrimAPI_MakeBox
 from OCP.gp import gp_Pnt
 from OCP.TopoDS import TopoDS_Edge, TopoDS_Shape
 
-from wrinkle_cad.cad.shapes import Part
-from wrinkle_cad.cad.splines import make_curve
-from wrinkle_cad.cad.write import write_step
+from wrinkle_cad.cad.exchange.shapes import Part
+from wrinkle_cad.cad.exchange.write import write_step
+from wrinkle_cad.cad.kernel.splines import make_curve
 
 Point = tuple[float, float, float]
 

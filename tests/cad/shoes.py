@@ -12,12 +12,12 @@ from OCP.TopoDS import TopoDS_Edge, TopoDS_Face, TopoDS_Shape
 
 from shoe_examples.rails import rail_points, vamp_rail
 from shoe_examples.upper import sewn, upper_face, upper_panels
-from wrinkle_cad.cad import kernel
-from wrinkle_cad.cad.carve import carve
-from wrinkle_cad.cad.opening import Opening
-from wrinkle_cad.cad.profiles import profile_curves
-from wrinkle_cad.cad.smooth import smooth_edge
-from wrinkle_cad.cad.stitch import Stitched, stitch
+from wrinkle_cad.cad.kernel import topology as kernel
+from wrinkle_cad.cad.upper.carve import carve
+from wrinkle_cad.cad.upper.opening import Opening
+from wrinkle_cad.cad.upper.profiles import profile_curves
+from wrinkle_cad.cad.upper.smooth import smooth_edge
+from wrinkle_cad.cad.upper.stitch import Stitched, stitch
 from wrinkle_cad.wrinkle import WrinkleStrip
 
 

@@ -12,11 +12,11 @@ from OCP.BRepExtrema import BRepExtrema_DistShapeShape
 from OCP.STEPControl import STEPControl_Reader
 from OCP.TopoDS import TopoDS_Shape
 
-from wrinkle_cad.cad import kernel
-from wrinkle_cad.cad.projection import UpperFaces
-from wrinkle_cad.cad.shapes import Part
-from wrinkle_cad.cad.stitch import Stitched
-from wrinkle_cad.cad.write import write_step, write_stl
+from wrinkle_cad.cad.exchange.shapes import Part
+from wrinkle_cad.cad.exchange.write import write_step, write_stl
+from wrinkle_cad.cad.kernel import topology as kernel
+from wrinkle_cad.cad.upper.projection import UpperFaces
+from wrinkle_cad.cad.upper.stitch import Stitched
 
 Floats = NDArray[np.float64]
 

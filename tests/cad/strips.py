@@ -13,12 +13,12 @@ from OCP.IFSelect import IFSelect_RetDone
 from OCP.STEPControl import STEPControl_Reader
 from OCP.TopoDS import TopoDS_Edge, TopoDS_Shape, TopoDS_Shell
 
-from wrinkle_cad.cad import kernel
-from wrinkle_cad.cad.directrix import Directrix, make_directrix, orient_alike, sample_directrix
-from wrinkle_cad.cad.faces import build_shell
-from wrinkle_cad.cad.shapes import Part
-from wrinkle_cad.cad.splines import make_curve
-from wrinkle_cad.cad.write import write_step
+from wrinkle_cad.cad.exchange.shapes import Part
+from wrinkle_cad.cad.exchange.write import write_step
+from wrinkle_cad.cad.faces.shell import build_shell
+from wrinkle_cad.cad.kernel import topology as kernel
+from wrinkle_cad.cad.kernel.splines import make_curve
+from wrinkle_cad.cad.rail.directrix import Directrix, make_directrix, orient_alike, sample_directrix
 from wrinkle_cad.strip.curve.sampling import Samples
 from wrinkle_cad.strip.triangulation import Triangulation, triangulate
 

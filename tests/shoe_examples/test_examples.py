@@ -15,9 +15,9 @@ from matplotlib import image
 from shoe_examples.rails import rail_points
 from shoe_examples.upper import section_poles, upper_face
 from tests.cad.stitch_checks import freecad_report, reread, shell_faults
-from wrinkle_cad.cad import kernel
-from wrinkle_cad.cad.read import read_cad
-from wrinkle_cad.cad.write import write_step
+from wrinkle_cad.cad.exchange.read import read_cad
+from wrinkle_cad.cad.exchange.write import write_step
+from wrinkle_cad.cad.kernel import topology as kernel
 from wrinkle_cad.job import make_job
 from wrinkle_cad.outcome import JobDone
 from wrinkle_cad.workflow import run_job

@@ -1,0 +1,126 @@
+"""IGES -> named shapes. Its 80-column records are counted first: the kernel does not miss any."""
+
+from __future__ import annotations
+
+import re
+import tempfile
+from collections import Counter
+from pathlib import Path
+from typing import Final
+
+from OCP.IFSelect import IFSelect_RetDone
+from OCP.IGESCAFControl import IGESCAFControl_Reader
+
+from wrinkle_cad.cad.exchange.step.text import plain_text
+from wrinkle_cad.cad.kernel.topology import KERNEL_ERRORS
+
+from .collect import listed, take_apart
+from .shapes import CadFile
+from .sniff import IGES, Source
+from .units import check_unit, unit_words
+from .xde import Leaf, kernel_parameters, leaves_of, new_document, silence_kernel
+
+_UNITS: Final = {
+    1: "inch",
+    2: "mm",
+    4: "ft",
+    5: "mile",
+    6: "m",
+    7: "km",
+    8: "mil",
+    9: "micrometre",
+    10: "cm",
+    11: "microinch",
+}
+_NAMED_UNIT: Final = 3
+_NAMES: Final = {"IN": "inch", "INCH": "inch", "MM": "mm", "FT": "ft", "M": "m", "CM": "cm"}
+_COUNT: Final = re.compile(rb"([SGDP])\s*(\d+)")
+
+
+def read(source: Source, unit: str | None) -> CadFile:
+    """Reads the content of an IGES file.
+
+    Args:
+        source: the file.
+        unit: refused unless it is the file's own, which IGES always has (inch by default).
+
+    Raises:
+        InputError: as for ``read_cad``.
+    """
+    text = plain_text(source.content)
+    _check_records(source, text)
+    declared = (_declared_unit(text),)
+    check_unit(source, declared, unit)
+    found = [
+        item
+        for leaf in _leaves(source, text)
+        for item in take_apart(leaf.shape, leaf.name, leaf.color, leaf.faces)
+    ]
+    shapes = listed(source, found, 1.0)
+    if not shapes:
+        raise source.fail("no geometry: no curve, face or solid in it - export it again")
+    words = unit_words(declared, unit)
+    return CadFile(source.path, IGES, words, shapes, source.is_compressed)
+
+
+def _check_records(source: Source, text: bytes) -> None:
+    """Compares the records of each section with the counts in the last record."""
+    letters = [line[72:73] for line in text.split(b"\n") if len(line) > 72]
+    counted = Counter(letters)
+    last = [line for line in text.split(b"\n") if line[72:73] == b"T"]
+    if not last:
+        raise source.fail("truncated: the terminate record is missing - copy or export it again")
+    for section, count in _COUNT.findall(last[-1][:72]):
+        if counted[section] != int(count):
+            raise source.fail(
+                f"truncated: {counted[section]} records in section {section.decode()},"
+                f" {int(count)} are declared - copy or export it again"
+            )
+
+
+def _declared_unit(text: bytes) -> str:
+    lines = [line[:72] for line in text.split(b"\n") if line[72:73] == b"G"]
+    fields = _global_fields(b"".join(lines))
+    flag = fields[13].strip() if len(fields) > 13 else b""
+    number = int(flag) if flag.isdigit() else 1
+    if number == _NAMED_UNIT and len(fields) > 14:
+        word = fields[14].split(b"H", 1)[-1].strip().decode("ascii", "replace").upper()
+        return _NAMES.get(word, word.lower())
+    return _UNITS.get(number, "unknown unit")
+
+
+def _global_fields(text: bytes) -> list[bytes]:
+    """Splits the global section; a field may be a counted string that holds the delimiter."""
+    delimiter = text[2:3] if text[:2] == b"1H" else b","
+    fields: list[bytes] = []
+    at = 0
+    while at < len(text):
+        counted = re.match(rb"\s*(\d+)H", text[at : at + 12])
+        start = at + counted.end() + int(counted[1]) if counted else at
+        end = text.find(delimiter, start)
+        end = len(text) if end < 0 else end
+        fields.append(text[at:end])
+        at = end + 1
+    return fields
+
+
+def _leaves(source: Source, text: bytes) -> list[Leaf]:
+    silence_kernel()
+    document = new_document()
+    try:
+        reader = IGESCAFControl_Reader()
+        reader.SetNameMode(True)
+        reader.SetColorMode(True)
+        # The kernel reads STEP and BREP from memory, but IGES from a file only.
+        with tempfile.TemporaryDirectory(prefix="wrinkle-cad-") as folder:
+            copy = Path(folder, "input.igs")
+            copy.write_bytes(text)
+            with kernel_parameters({"xstep.cascade.unit": "MM"}):
+                is_read = reader.ReadFile(str(copy)) == IFSelect_RetDone
+                is_whole = is_read and reader.Transfer(document)
+        if not is_read:
+            raise source.fail("damaged: not readable as IGES although its records are whole")
+        return leaves_of(document) if is_whole else []
+    except KERNEL_ERRORS as error:
+        words = " ".join(str(error).split()) or type(error).__name__
+        raise source.fail(f"damaged: the CAD kernel fails on it ({words})") from error

@@ -1,0 +1,284 @@
+"""The kernel's document of named, colored, placed shapes (XDE): read into plain records.
+
+Labels hold names and colors; an assembly's components hold placements and instance names. A leaf
+is a product that is no assembly, at one place. Names come from the product unless its instance says
+more; a leaf without a name takes that of its nearest named ancestor.
+"""
+
+from __future__ import annotations
+
+import re
+import unicodedata
+from collections import Counter
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+from dataclasses import dataclass
+from typing import Final
+
+from OCP.Interface import Interface_Static
+from OCP.Message import Message
+from OCP.Quantity import Quantity_Color, Quantity_TOC_sRGB
+from OCP.TCollection import TCollection_AsciiString, TCollection_ExtendedString
+from OCP.TDataStd import TDataStd_Name
+from OCP.TDF import TDF_Label, TDF_Tool
+from OCP.TDocStd import TDocStd_Document
+from OCP.TopAbs import TopAbs_FACE, TopAbs_SHELL
+from OCP.TopLoc import TopLoc_Location
+from OCP.TopoDS import TopoDS_Shape
+from OCP.XCAFDoc import (
+    XCAFDoc_ColorCurv,
+    XCAFDoc_ColorGen,
+    XCAFDoc_ColorSurf,
+    XCAFDoc_ColorTool,
+    XCAFDoc_DocumentTool,
+    XCAFDoc_ShapeTool,
+)
+
+from wrinkle_cad.cad.kernel.topology import as_face, faces_of
+
+from .shapes import FaceStyle, has_role
+
+try:  # OCP 7.9
+    from OCP.TDF import TDF_LabelSequence
+except ImportError:  # OCP 8.0 keeps every collection in one module
+    from OCP.collections import Sequence_TDF_Label as TDF_LabelSequence
+
+Color = tuple[float, float, float]
+
+# Names that programs give by themselves: the kernel, build123d, SolidWorks.
+_AUTOMATIC: Final = re.compile(
+    r"Open CASCADE STEP translator.*|Open CASCADE Shape Model|=>\[[\d:]+\]|NONE|Unnamed"
+    r"|COMPOUND|COMPSOLID|SOLID|SHELL|FACE|WIRE|EDGE|VERTEX|SHAPE|ASSEMBLY"
+)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Leaf:
+    """One product at one place."""
+
+    shape: TopoDS_Shape
+    """World coordinates."""
+    name: str
+    """Its own name or that of the nearest named ancestor; empty if none has one."""
+    named_at: str
+    """Identifies the occurrence that carries the name; the leaf itself if there is no name."""
+    color: Color | None
+    """Its own color, or that of its instance."""
+    named_surfaces: tuple[tuple[str, TopoDS_Shape, Color | None], ...]
+    """Faces and shells inside it that have names of their own, and their own colors."""
+    faces: tuple[FaceStyle, ...]
+    """Faces inside it that have names or colors of their own."""
+
+
+def silence_kernel() -> None:
+    """Keeps the kernel's statistics and warnings off the process's output, for good."""
+    messenger = Message.DefaultMessenger_s()
+    for printer in list(messenger.Printers()):
+        messenger.RemovePrinter(printer)
+
+
+def set_parameter(name: str, value: str | int) -> None:
+    """Sets one of the kernel's process-wide exchange parameters.
+
+    Raises:
+        ValueError: the kernel knows no such parameter or value (a mistake in this program).
+    """
+    is_set = (
+        Interface_Static.SetIVal_s(name, value)
+        if isinstance(value, int)
+        else Interface_Static.SetCVal_s(name, value)
+    )
+    if not is_set:
+        raise ValueError(f"the kernel refuses {name} = {value}")
+
+
+@contextmanager
+def kernel_parameters(wanted: Mapping[str, str | int]) -> Iterator[None]:
+    """Sets process-wide exchange parameters of the kernel for a while; see ``set_parameter``.
+
+    Other libraries in the process rely on them, as this one does.
+    """
+    before = {
+        name: Interface_Static.IVal_s(name)
+        if isinstance(value, int)
+        else Interface_Static.CVal_s(name)
+        for name, value in wanted.items()
+    }
+    try:
+        for name, value in wanted.items():
+            set_parameter(name, value)
+        yield
+    finally:
+        for name, value in before.items():
+            set_parameter(name, value)
+
+
+def new_document() -> TDocStd_Document:
+    """Returns an empty document that belongs to no application, so it goes when it is dropped."""
+    return TDocStd_Document(TCollection_ExtendedString("XmlOcaf"))
+
+
+def set_name(label: TDF_Label, name: str) -> None:
+    """Names a label."""
+    TDataStd_Name.Set_s(label, TCollection_ExtendedString(name, True))
+
+
+def leaves_of(document: TDocStd_Document) -> list[Leaf]:
+    """Returns every leaf of a document, in the file's order."""
+    tool = XCAFDoc_DocumentTool.ShapeTool_s(document.Main())
+    roots = TDF_LabelSequence()
+    tool.GetFreeShapes(roots)
+    labels = [roots.Value(i) for i in range(1, roots.Length() + 1)]
+    uses = Counter(_references(labels))
+    return [
+        leaf for label in labels for leaf in _walk(label, TopLoc_Location(), "", "", None, "", uses)
+    ]
+
+
+def _references(labels: list[TDF_Label]) -> Iterator[str]:
+    """Yields the entry of each product as often as it is used below the labels."""
+    for label in labels:
+        product = _product(label)
+        yield _entry(product)
+        yield from _references(_components(product))
+
+
+def _walk(
+    label: TDF_Label,
+    place: TopLoc_Location,
+    path: str,
+    outer_name: str,
+    outer_color: Color | None,
+    outer_at: str,
+    uses: Counter[str],
+) -> Iterator[Leaf]:
+    product = _product(label)
+    path = f"{path}/{_entry(label)}"
+    is_instance = XCAFDoc_ShapeTool.IsReference_s(label)
+    if is_instance:
+        place = place * XCAFDoc_ShapeTool.GetLocation_s(label)
+    own = _own_name(label, product, is_repeated=uses[_entry(product)] > 1)
+    name, named_at = (own, path) if own else (outer_name, outer_at)
+    color = (_color(label) if is_instance else None) or _product_color(product) or outer_color
+    components = _components(product)
+    for component in components:
+        yield from _walk(component, place, path, name, color, named_at, uses)
+    if not components:
+        shape = XCAFDoc_ShapeTool.GetShape_s(product)
+        if not shape.IsNull():
+            surfaces, faces = _named_surfaces(product, place), _face_styles(product, place)
+            moved = shape.Moved(place)
+            yield Leaf(moved, name, named_at or path, color, tuple(surfaces), tuple(faces))
+
+
+def _product(label: TDF_Label) -> TDF_Label:
+    if not XCAFDoc_ShapeTool.IsReference_s(label):
+        return label
+    product = TDF_Label()
+    XCAFDoc_ShapeTool.GetReferredShape_s(label, product)
+    return product
+
+
+def _components(product: TDF_Label) -> list[TDF_Label]:
+    if not XCAFDoc_ShapeTool.IsAssembly_s(product):
+        return []
+    found = TDF_LabelSequence()
+    XCAFDoc_ShapeTool.GetComponents_s(product, found, False)
+    return [found.Value(i) for i in range(1, found.Length() + 1)]
+
+
+def _own_name(label: TDF_Label, product: TDF_Label, *, is_repeated: bool) -> str:
+    """Chooses between the name of an instance and that of its product."""
+    instance, name = _name(label), _name(product)
+    if instance and (is_repeated or not name or has_role(instance)):
+        return instance
+    return name
+
+
+def _name(label: TDF_Label) -> str:
+    # FindAttribute ends the process where the attribute is missing.
+    if not label.IsAttribute(TDataStd_Name.GetID_s()):
+        return ""
+    attribute = TDataStd_Name()
+    label.FindAttribute(TDataStd_Name.GetID_s(), attribute)
+    return proper_name(attribute.Get().ToExtString())
+
+
+def proper_name(raw: str) -> str:
+    """Returns a name as a person gave it: empty if a program did, repaired, without line ends."""
+    name = printable(_decoded_twice(raw)).strip()
+    return "" if _AUTOMATIC.fullmatch(name) else name
+
+
+def printable(name: str) -> str:
+    """Returns the name with blanks for control characters, line ends and lone surrogates."""
+    return "".join(
+        " " if unicodedata.category(letter) in ("Cc", "Cs", "Zl", "Zp") else letter
+        for letter in name
+    )
+
+
+def _decoded_twice(name: str) -> str:
+    """Repairs a name whose UTF-8 was taken for Latin-1 and encoded again, as build123d writes."""
+    try:
+        return name.encode("latin-1").decode("utf-8")
+    except (UnicodeEncodeError, UnicodeDecodeError):
+        return name
+
+
+def _entry(label: TDF_Label) -> str:
+    entry = TCollection_AsciiString()
+    TDF_Tool.Entry_s(label, entry)
+    return str(entry.ToCString())
+
+
+def _color(label: TDF_Label) -> Color | None:
+    color = Quantity_Color()
+    for kind in (XCAFDoc_ColorSurf, XCAFDoc_ColorCurv, XCAFDoc_ColorGen):
+        if XCAFDoc_ColorTool.GetColor_s(label, kind, color):
+            red, green, blue = color.Values(Quantity_TOC_sRGB)
+            # The kernel keeps single precision in linear light.
+            return (round(red, 6), round(green, 6), round(blue, 6))
+    return None
+
+
+def _product_color(product: TDF_Label) -> Color | None:
+    """Returns a product's color, or the one that its pieces share.
+
+    Colored faces count where nothing larger has a color, and then all faces must have it.
+    """
+    own = _color(product)
+    if own is not None:
+        return own
+    pieces = [(shape, color) for label, shape in _pieces(product) if (color := _color(label))]
+    colors = {color for shape, color in pieces if shape.ShapeType() != TopAbs_FACE}
+    faces = [color for shape, color in pieces if shape.ShapeType() == TopAbs_FACE]
+    if not colors and faces and len(faces) == len(faces_of(XCAFDoc_ShapeTool.GetShape_s(product))):
+        colors = set(faces)
+    return colors.pop() if len(colors) == 1 else None
+
+
+def _pieces(product: TDF_Label) -> Iterator[tuple[TDF_Label, TopoDS_Shape]]:
+    """Yields the pieces of a product that have names or colors."""
+    found = TDF_LabelSequence()
+    XCAFDoc_ShapeTool.GetSubShapes_s(product, found)
+    for i in range(1, found.Length() + 1):
+        label = found.Value(i)
+        yield label, XCAFDoc_ShapeTool.GetShape_s(label)
+
+
+def _named_surfaces(
+    product: TDF_Label, place: TopLoc_Location
+) -> Iterator[tuple[str, TopoDS_Shape, Color | None]]:
+    for label, shape in _pieces(product):
+        name = _name(label)
+        if name and shape.ShapeType() in (TopAbs_FACE, TopAbs_SHELL):
+            yield name, shape.Moved(place), _color(label)
+
+
+def _face_styles(product: TDF_Label, place: TopLoc_Location) -> Iterator[FaceStyle]:
+    for label, shape in _pieces(product):
+        if shape.ShapeType() == TopAbs_FACE:
+            name, color = _name(label), _color(label)
+            if name or color is not None:
+                yield FaceStyle(as_face(shape.Moved(place)), name, color)

@@ -1,0 +1,1 @@
+"""A triangulation becomes a shell: planes and cones between shared edges."""

@@ -1,0 +1,126 @@
+"""A triangulation becomes one shell: facets, or cones whose banks are the rails themselves.
+
+Vertices and edges are made once and shared, so nothing is sewn and no tolerance decides what
+belongs together. Every face lies with its normal on the side from which the triangle p[i] p[i+1]
+q[j] is counter-clockwise.
+
+Facets: the triangles. Cones: for each run of steps with one apex, the cone over that stretch of
+the rail, or the plane where these lie in one. Where the rails meet, the chord of the first bank
+edge is a bridge, and between the chord and the rail lies a cone too. Faces not wider than 5e-6 mm
+(2e-7 ... 5e-6, by the strip's size) are left out and closed over; their rail is then the border.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+from OCP.BRep import BRep_Builder
+from OCP.TopoDS import TopoDS_Shape, TopoDS_Shell
+
+from wrinkle_cad import settings
+from wrinkle_cad.cad.kernel.topology import check_valid, kernel_step
+from wrinkle_cad.cad.rail.directrix import Directrix
+from wrinkle_cad.errors import CadError, InputError
+from wrinkle_cad.strip.curve.sampling import Samples
+from wrinkle_cad.strip.triangulation import P_STEP, Triangulation
+
+from .cone_faces import cone_face
+from .face_borders import Border, flipped
+from .fans import Fan, fans_of, thin_triangles
+from .plane_faces import is_plane_sector, plane_face
+from .skeleton import Skeleton, thin_limit
+from .slivers import cut_at_knots
+
+Floats = NDArray[np.float64]
+Bools = NDArray[np.bool_]
+
+KINDS = ("cones", "facets")
+
+
+def build_shell(
+    triangulation: Triangulation,
+    p: Directrix,
+    q: Directrix,
+    p_samples: Samples,
+    q_samples: Samples,
+    kind: str = settings.SURFACE,
+    *,
+    is_merged: bool = True,
+) -> TopoDS_Shell:
+    """Returns the shell of a strip, valid by the kernel's own check.
+
+    Args:
+        triangulation: the strip between the samples.
+        p: rail P.
+        q: rail Q, in the same direction.
+        p_samples: vertices on P, with m points.
+        q_samples: vertices on Q, with n points.
+        kind: "cones" or "facets".
+        is_merged: for cones, whether neighbouring steps with one apex make one face; if not,
+            every sample that bounds a triangle is a vertex.
+
+    Raises:
+        InputError: an unknown kind, or samples that are not those of the triangulation.
+        CadError: no face is left, or the shell is not valid.
+    """
+    if kind not in KINDS:
+        raise InputError(f"surface - {kind!r} - one of {', '.join(KINDS)} - choose one")
+    _check_samples(triangulation, p_samples, q_samples)
+    has_curves = kind == "cones"
+    thin = thin_triangles(triangulation, thin_limit(triangulation))
+    corners = (_corners(p, p_samples), _corners(q, q_samples))
+    fans = fans_of(triangulation, corners, thin, is_merged=is_merged and has_curves)
+    skeleton = Skeleton(triangulation, (p, q), (p_samples, q_samples), has_curves=has_curves)
+    with kernel_step("make the faces of a strip"):
+        kept = [fan for fan in fans if not (fan.is_thin and skeleton.leave_out(fan))]
+        faces = [face for fan in kept for face in _faces_of(fan, skeleton)]
+    if not faces:
+        raise CadError(
+            "make the faces of a strip",
+            f"every face is thinner than {skeleton.limit:.1e} mm - sample the rails more finely",
+        )
+    shell = _shell_of(faces)
+    check_valid(shell, "make the faces of a strip")
+    return shell
+
+
+def _check_samples(triangulation: Triangulation, p: Samples, q: Samples) -> None:
+    for name, given, own in (("P", p, triangulation.p), ("Q", q, triangulation.q)):
+        if not np.array_equal(given.points, own):
+            raise InputError(
+                f"samples of {name} - {len(given.points)} points that are not the {len(own)} of the"
+                " triangulation - pass the samples that were triangulated"
+            )
+
+
+def _corners(rail: Directrix, samples: Samples) -> Bools:
+    """Returns (k,) bool: the samples where the rail is not C1."""
+    breaks = np.asarray(rail.breaks)
+    at = np.searchsorted(breaks, samples.parameters)
+    padded = np.concatenate(([-np.inf], breaks, [np.inf]))
+    apart = np.minimum(samples.parameters - padded[at], padded[at + 1] - samples.parameters)
+    return np.asarray(apart <= 1e-12 * rail.length, dtype=np.bool_)
+
+
+def _faces_of(fan: Fan, skeleton: Skeleton) -> list[TopoDS_Shape]:
+    bank, early, late = skeleton.bank(fan), skeleton.bridge(fan.early), skeleton.bridge(fan.late)
+    corner = skeleton.corner(1 - fan.side, fan.apex)
+    apex, vertex = skeleton.points[corner], skeleton.vertex(corner)
+    # Towards the apex is from P to Q for a bank on P, and from Q to P for a bank on Q.
+    to_apex, from_apex = (late, flipped(early)) if fan.side == P_STEP else (flipped(late), early)
+    (edge,) = bank
+    if is_plane_sector(edge.shape, apex):
+        loop: Border = (*bank, *to_apex, *from_apex)
+        return [plane_face(loop if fan.side == P_STEP else flipped(loop))]
+    sectors = cut_at_knots((edge, to_apex, from_apex), apex, vertex, skeleton.limit)
+    knots = skeleton.parameters(fan)
+    faces = [cone_face(*sector, apex, vertex, knots) for sector in sectors]
+    return [face if fan.side == P_STEP else face.Reversed() for face in faces]
+
+
+def _shell_of(faces: list[TopoDS_Shape]) -> TopoDS_Shell:
+    builder, shell = BRep_Builder(), TopoDS_Shell()
+    builder.MakeShell(shell)
+    for face in faces:
+        builder.Add(shell, face)
+    return shell

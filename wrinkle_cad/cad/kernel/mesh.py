@@ -1,0 +1,100 @@
+"""Triangles of a shape as arrays, for whoever draws or prints it."""
+
+from __future__ import annotations
+
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+from OCP.BRep import BRep_Tool
+from OCP.BRepBuilderAPI import BRepBuilderAPI_Copy
+from OCP.BRepMesh import BRepMesh_IncrementalMesh
+from OCP.BRepTools import BRepTools
+from OCP.TopAbs import TopAbs_REVERSED
+from OCP.TopLoc import TopLoc_Location
+from OCP.TopoDS import TopoDS_Shape
+
+from wrinkle_cad import settings
+
+from .topology import faces_of, kernel_step
+
+_STL_HEADER: Final = b"wrinkle_cad, millimetres"
+_STL_TRIANGLE: Final = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("tag", "<u2")])
+
+Floats = NDArray[np.float64]
+Indices = NDArray[np.int64]
+
+
+def mesh_of(
+    shape: TopoDS_Shape,
+    *,
+    tolerance: float = settings.TOLERANCE,
+    angular_tolerance: float = settings.MESH_ANGLE,
+) -> tuple[Floats, Indices]:
+    """Returns the triangles of a shape's faces; vertices are not shared between faces.
+
+    Args:
+        shape: anything with faces; it is not written to.
+        tolerance: mm; how far a triangle may lie from its face.
+        angular_tolerance: rad; how far neighbouring normals may differ on one face.
+
+    Returns:
+        (k, 3) float64, mm, and (l, 3) int64 into it, counter-clockwise seen from the outside.
+
+    Raises:
+        CadError: the kernel cannot mesh the shape.
+    """
+    points: list[Floats] = [np.zeros((0, 3))]
+    triangles: list[Indices] = [np.zeros((0, 3), dtype=np.int64)]
+    start = 0
+    with kernel_step("mesh the shape"):
+        own = meshed_copy(shape, tolerance, angular_tolerance)
+        for face in faces_of(own):
+            place = TopLoc_Location()
+            mesh = BRep_Tool.Triangulation_s(face, place)
+            if mesh is None:
+                continue
+            moved = place.Transformation()
+            nodes = (mesh.Node(i + 1).Transformed(moved) for i in range(mesh.NbNodes()))
+            points.append(np.array([(node.X(), node.Y(), node.Z()) for node in nodes]))
+            corners = np.array([mesh.Triangle(i + 1).Get() for i in range(mesh.NbTriangles())])
+            if face.Orientation() == TopAbs_REVERSED:
+                corners = corners[:, ::-1]
+            triangles.append(corners - 1 + start)
+            start += mesh.NbNodes()
+    return np.vstack(points), np.vstack(triangles)
+
+
+def meshed_copy(shape: TopoDS_Shape, tolerance: float, angular_tolerance: float) -> TopoDS_Shape:
+    """Returns a copy of the shape that carries triangles.
+
+    A mesh is stored in the shape, and whoever owns the shape did not ask for one.
+    """
+    own = BRepBuilderAPI_Copy(shape, True, False).Shape()
+    BRepTools.Clean_s(own)
+    sag = settings.MESH_SAG_PER_TOLERANCE * tolerance
+    BRepMesh_IncrementalMesh(own, sag, False, angular_tolerance, False)
+    return own
+
+
+def binary_stl(points: Floats, triangles: Indices) -> bytes:
+    """Returns a binary STL file.
+
+    Triangles of which two corners are the same point in single precision are left out: the mesher
+    makes one at the apex of every cone, and to a slicer each is an open border.
+
+    Args:
+        points: (k, 3) float64, mm.
+        triangles: (l, 3) int64 into them, counter-clockwise seen from the outside.
+    """
+    corners = points[triangles].astype("<f4")
+    same = (corners == np.roll(corners, 1, axis=1)).all(axis=2).any(axis=1)
+    corners = corners[~same]
+    sides = np.diff(corners.astype(np.float64), axis=1)
+    normals = np.cross(sides[:, 0], sides[:, 1])
+    lengths = np.linalg.norm(normals, axis=1, keepdims=True)
+    records = np.zeros(len(corners), dtype=_STL_TRIANGLE)
+    records["corners"] = corners
+    records["normal"] = np.divide(normals, lengths, out=np.zeros_like(normals), where=lengths > 0.0)
+    count = np.array(len(records), dtype="<u4").tobytes()
+    return b"".join((_STL_HEADER.ljust(80), count, records.tobytes()))

@@ -1,0 +1,199 @@
+"""Bands: the strips that close the gap between an opening's boundary and the profiles.
+
+A band is found by the same search as the wrinkle itself, and shares the wrinkle's samples along the
+profile. It has zero width at both ends of the opening; anywhere else that would leave a slit.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+from OCP.BRepBuilderAPI import BRepBuilderAPI_MakeEdge
+from OCP.gp import gp_Pnt
+from OCP.TopoDS import TopoDS_Edge, TopoDS_Shell
+
+from wrinkle_cad import settings
+from wrinkle_cad.cad.faces.shell import build_shell
+from wrinkle_cad.cad.kernel.connectivity import edge_ends
+from wrinkle_cad.cad.rail.directrix import Directrix, make_directrix, sample_directrix
+from wrinkle_cad.errors import InputError
+from wrinkle_cad.strip.curve.sampling import Samples
+from wrinkle_cad.strip.sampled_strip import SampledStrip
+from wrinkle_cad.strip.triangulation import Triangulation, triangulate
+
+from .opening import Opening
+
+Floats = NDArray[np.float64]
+
+
+class StripLike(SampledStrip, Protocol):
+    """What a strip must know to be stitched in; ``WrinkleStrip`` does."""
+
+    @property
+    def p(self) -> Directrix:
+        """The profile along the opening's P side."""
+
+    @property
+    def q(self) -> Directrix:
+        """The profile along the opening's Q side."""
+
+    def topods_shell(self) -> TopoDS_Shell:
+        """Returns its surface."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Band:
+    """The strip between one side of an opening and one profile."""
+
+    name: str
+    """``P`` or ``Q``, the rail that it closes up to; in a stitched upper after its strip's name."""
+    p: Directrix
+    """Its rail along P: the opening's boundary or the profile."""
+    q: Directrix
+    """Its rail along Q, in the same direction."""
+    p_samples: Samples
+    """The samples of its rail along P."""
+    q_samples: Samples
+    """The samples of its rail along Q."""
+    triangulation: Triangulation
+    """The band, as triangles."""
+    shell: TopoDS_Shell
+    """The band, as faces."""
+    width: float
+    """mm; the largest distance between boundary and profile."""
+
+
+def side_curve(edges: Sequence[TopoDS_Edge], name: str) -> Directrix:
+    """Returns the edges of one side as one directrix; gaps of the upper are crossed straight."""
+    run: list[TopoDS_Edge] = []
+    for edge in edges:
+        if run:
+            before, after = edge_ends(run[-1])[1], edge_ends(edge)[0]
+            if float(np.linalg.norm(after - before)) > settings.GAP_CROSSED:
+                run.append(_straight(before, after))
+        run.append(edge)
+    return make_directrix(run, name=name)
+
+
+def _straight(start: Floats, end: Floats) -> TopoDS_Edge:
+    points = (gp_Pnt(*start.tolist()), gp_Pnt(*end.tolist()))
+    return BRepBuilderAPI_MakeEdge(*points).Edge()
+
+
+def make_band(
+    opening: Opening, i: int, profile: Directrix, samples: Samples, *, tolerance: float
+) -> Band | None:
+    """Returns the band between one side of an opening and a profile, None if they coincide.
+
+    It lies between its rails as the wrinkle does between P and Q, so that all strips of one opening
+    face the same way.
+
+    Args:
+        opening: what was carved.
+        i: 0 for the side along P, 1 for that along Q.
+        profile: the wrinkle's rail along that side.
+        samples: of the profile.
+        tolerance: mm; chords of the side.
+
+    Raises:
+        InputError: the band has no width somewhere between its ends, or folds over.
+    """
+    name = "PQ"[i]
+    side = side_curve(opening.q_edges if i else opening.p_edges, f"opening along {name}")
+    width = float(_distances(samples.points, side).max())
+    if width <= settings.SEWN_DIRECTLY:
+        return None
+    _check_open(profile, side, width, name)
+    side_samples = sample_directrix(side, tolerance)
+    rails = (profile, side) if i else (side, profile)
+    sampled = (samples, side_samples) if i else (side_samples, samples)
+    triangulation = _triangulated(*sampled, settings.planarity_from(tolerance))
+    _check_folds(triangulation, opening, i, width)
+    shell = build_shell(triangulation, *rails, *sampled, settings.SURFACE)
+    return Band(name, *rails, *sampled, triangulation, shell, width)
+
+
+def _triangulated(p: Samples, q: Samples, planarity: float) -> Triangulation:
+    """Returns the most developable band that does not buy its developability with sharp folds."""
+    found, least = (
+        triangulate(p.points, q.points, criteria=criteria, planarity=planarity)
+        for criteria in (settings.CRITERIA, ("bending",))
+    )
+    dear = found.bending > settings.BAND_BENDING_PRICE * least.bending
+    return least if dear else found
+
+
+def _distances(points: Floats, side: Directrix) -> Floats:
+    """Returns (k,) mm: how far points are from a curve, exact to far below the band's width."""
+    parameters = np.union1d(np.linspace(*side.interval, settings.BAND_LINE), side.breaks)
+    line = side.point_at(parameters)
+    chord = np.diff(line, axis=0)
+    square = np.maximum((chord**2).sum(axis=1), np.finfo(np.float64).tiny)
+    feet, speeds = np.empty(len(points)), np.empty(len(points))
+    for i, point in enumerate(points):
+        share = np.clip(((point - line[:-1]) * chord).sum(axis=1) / square, 0.0, 1.0)
+        off = line[:-1] + share[:, None] * chord - point
+        nearest = int((off * off).sum(axis=1).argmin())
+        step = parameters[nearest + 1] - parameters[nearest]
+        feet[i] = parameters[nearest] + share[nearest] * step
+        speeds[i] = np.sqrt(square[nearest]) / step
+    for _ in range(2):
+        # A foot on the chord is off along the curve where the curve's speed varies.
+        along = ((points - side.point_at(feet)) * side.tangent_at(feet)).sum(axis=1)
+        feet = np.clip(feet + along / speeds, *side.interval)
+    gaps: Floats = np.linalg.norm(side.point_at(feet) - points, axis=1)
+    return gaps
+
+
+def _check_open(profile: Directrix, side: Directrix, width: float, name: str) -> None:
+    """Checks that a band narrows to nothing at its two ends only.
+
+    Near an end it narrows steadily; anywhere else the width has a minimum of its own.
+    """
+    parameters = np.linspace(*profile.interval, settings.BAND_CHECKS)
+    gaps = _distances(profile.point_at(parameters), side)
+    inner = gaps[1:-1]
+    is_least = (inner <= gaps[:-2]) & (inner <= gaps[2:])
+    narrow = is_least & (inner < settings.BAND_NARROWEST * width)
+    if narrow.any():
+        at = 1 + int(np.flatnonzero(narrow)[inner[narrow].argmin()])
+        raise InputError(
+            f"profile {name} - it touches the opening's boundary at {parameters[at]:.4g} mm along"
+            f" it ({gaps[at]:.1e} mm) and leaves it by {width:.3g} mm elsewhere - a band has no"
+            " width at its two ends only - carve with a margin, or keep the profile on the boundary"
+        )
+
+
+def _check_folds(triangulation: Triangulation, opening: Opening, i: int, width: float) -> None:
+    name, share = "PQ"[i], _overhang(triangulation, opening, i)
+    if share > settings.BAND_OVERHANG_LIMIT:
+        raise InputError(
+            f"band along {name} - up to {width:.3g} mm wide, {share:.0%} of it folds over: it faces"
+            f" into the upper - {settings.BAND_OVERHANG_LIMIT:.0%} is the limit - lower the waves,"
+            " take fewer of them or a wider margin"
+        )
+    fold = np.abs(triangulation.fold)
+    worst = float(fold.max(initial=0.0))
+    if worst > settings.BAND_FOLD_LIMIT:
+        raise InputError(
+            f"band along {name} - up to {width:.3g} mm wide, it folds over by"
+            f" {np.degrees(worst):.0f} degrees - {np.degrees(settings.BAND_FOLD_LIMIT):.0f} is the"
+            " limit - lower the waves, take fewer of them or a wider margin"
+        )
+
+
+def _overhang(triangulation: Triangulation, opening: Opening, i: int) -> float:
+    """Returns the share of a band's area that faces against the upper's normal nearby."""
+    rail, first = opening.rails[i], opening.rails[0]
+    facing_of_strip = np.cross(first.tangents, opening.across[0]) * first.feet.normals
+    corners = np.vstack((triangulation.p, triangulation.q))[triangulation.triangles]
+    areas = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    middles = corners.mean(axis=1)
+    nearest = np.linalg.norm(middles[:, None] - rail.points[None], axis=2).argmin(axis=1)
+    facing = (areas * rail.feet.normals[nearest]).sum(axis=1) * np.sign(facing_of_strip.sum())
+    sizes = np.linalg.norm(areas, axis=1)
+    return float(sizes[facing < 0.0].sum() / sizes.sum())

@@ -1,0 +1,85 @@
+"""Proves that the border of a stitched shell is the upper's own border and nothing else."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from OCP.BRepExtrema import BRepExtrema_DistShapeShape
+from OCP.TopoDS import TopoDS_Edge, TopoDS_Shape
+
+from wrinkle_cad import settings
+from wrinkle_cad.cad.kernel import topology as kernel
+from wrinkle_cad.cad.kernel.connectivity import edge_middle
+from wrinkle_cad.cad.kernel.shape_index import ShapeIndex
+from wrinkle_cad.errors import CadError
+
+STEP = "compare the border with the upper's"
+
+
+@dataclass(frozen=True, slots=True)
+class Border:
+    """The free edges of an upper before and after."""
+
+    before: int
+    """How many it had."""
+    after: int
+    """How many the shell has."""
+    length_before: float
+    """mm."""
+    length_after: float
+    """mm."""
+
+
+def compared_border(
+    upper: TopoDS_Shape, shell: TopoDS_Shape, lost: float, allowance: float
+) -> Border:
+    """Returns the free edges of upper and shell after checking that they are the same lines.
+
+    Args:
+        upper: before.
+        shell: after.
+        lost: mm; border of the upper that was carved out with the strips.
+        allowance: mm; how much longer the border may be: by what strips bridge gaps of the upper.
+
+    Raises:
+        CadError: a free edge of the shell is none of the upper's, or some of these are missing.
+    """
+    before, after = kernel.free_edges(upper), kernel.free_edges(shell)
+    lengths = [sum(kernel.length_of(edge) for edge in edges) for edges in (before, after)]
+    strays = _strays(before, after, allowance)
+    if strays:
+        raise CadError(
+            STEP,
+            f"{len(strays)} of the {len(after)} free edges of the result, {sum(strays):.3g} mm in"
+            " all, are none of the upper's - 0 is the limit - the wrinkle is not watertight: change"
+            " the margin, or move the rails a little",
+        )
+    off = lengths[1] - (lengths[0] - lost)
+    slack = allowance + settings.SEWING * (1 + len(after))
+    if not -slack <= off <= slack:
+        raise CadError(
+            STEP,
+            f"the border is {lengths[1]:.6g} mm long, the upper's {lengths[0] - lost:.6g} mm"
+            " without what was carved out -"
+            f" {slack:.3g} mm is the limit - change the margin, or move the rails a little",
+        )
+    return Border(len(before), len(after), lengths[0], lengths[1])
+
+
+def _strays(
+    before: Sequence[TopoDS_Edge], after: Sequence[TopoDS_Edge], allowance: float
+) -> list[float]:
+    """Returns the lengths in mm of the free edges that do not lie on the upper's."""
+    if not before:
+        return [kernel.length_of(edge) for edge in after]
+    held, strays = kernel.make_compound(before), []
+    known = ShapeIndex(before)
+    for edge in after:
+        if known.find(edge) >= 0:
+            continue
+        gap = BRepExtrema_DistShapeShape(kernel.make_vertex(edge_middle(edge)), held).Value()
+        length = kernel.length_of(edge)
+        if gap > settings.SEWING and length > allowance:
+            strays.append(length)
+    return strays

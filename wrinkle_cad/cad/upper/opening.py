@@ -1,0 +1,124 @@
+"""An upper with a strip cut out, and what was asked for when it was cut."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from OCP.TopoDS import TopoDS_Edge, TopoDS_Shape
+
+from wrinkle_cad.cad.rail.directrix import Directrix
+
+from .outline import Rail
+from .smooth import curve_edges, edge_row
+
+Floats = NDArray[np.float64]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class CarveRequest:
+    """What was asked for; enough to carve another body in the same way."""
+
+    p: Directrix
+    q: Directrix
+    margin: float
+    fade: float
+    limit: float
+    join: float
+    allow_split: bool
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Opening:
+    """An upper with the strip cut out."""
+
+    body_shape: TopoDS_Shape
+    """The upper without the strip: a shell, or a compound of shells that share no edge."""
+    removed_shape: TopoDS_Shape
+    """What was cut out, likewise."""
+    p_edges: tuple[TopoDS_Edge, ...]
+    """The opening's edges along P, edges of the body, in order and oriented along P."""
+    q_edges: tuple[TopoDS_Edge, ...]
+    """The opening's edges along Q."""
+    start_edges: tuple[TopoDS_Edge, ...]
+    """From P to Q at the start; edges of the body, or of the upper's border; none if they meet."""
+    end_edges: tuple[TopoDS_Edge, ...]
+    """From P to Q at the end."""
+    rail_p_curve: Directrix
+    """P as it lies on the upper."""
+    rail_q_curve: Directrix
+    """Q as it lies on the upper."""
+    rails: tuple[Rail, Rail]
+    """P and Q on the upper as points, with normals and tangents."""
+    across: tuple[Floats, Floats]
+    """Per rail (k, 3) unit vectors along the upper, towards the other rail."""
+    ends_on_border: tuple[bool, bool]
+    """Whether the strip starts, and ends, on the upper's own border."""
+    face_origin: tuple[int, ...]
+    """Per face of the body: which face of the upper it is, or is part of."""
+    distances: tuple[float, float]
+    """mm; how far P and Q were from the upper."""
+    areas: tuple[float, float, float]
+    """mm^2: upper, body, removed."""
+    body_count: int
+    """Connected parts of the body."""
+    lost_border: float
+    """mm; border of the upper that was cut out: slits between its faces, holes."""
+    upper_shape: TopoDS_Shape
+    """The upper, its faces joined where they meet."""
+    given_shape: TopoDS_Shape
+    """The upper as it was given."""
+    request: CarveRequest
+    """What was asked for."""
+    source: Any = None
+    """The object that the upper came in, whose names and colours the body keeps."""
+
+    @property
+    def area_balance(self) -> float:
+        """mm^2: body and removed together, less the upper."""
+        return self.areas[1] + self.areas[2] - self.areas[0]
+
+    @property
+    def body(self) -> Any:
+        """The upper without the strip, as build123d has it, its names and colours kept."""
+        from wrinkle_cad.cad.exchange.likeness import body_alike
+
+        return body_alike(self.body_shape, self.face_origin, self.given_shape, self.source)
+
+    @property
+    def removed(self) -> Any:
+        """What was cut out, as build123d has it."""
+        from wrinkle_cad.cad.exchange.likeness import alike
+
+        return alike(self.removed_shape, self.source, "removed")
+
+    @property
+    def p(self) -> Any:
+        """The opening's boundary along P: an edge of the body, or a wire of several.
+
+        Where the upper has a gap that P crosses, it is a compound.
+        """
+        return _curve(self.p_edges, "P")
+
+    @property
+    def q(self) -> Any:
+        """The opening's boundary along Q."""
+        return _curve(self.q_edges, "Q")
+
+    @property
+    def rail_p(self) -> Any:
+        """P as it lies on the upper: a build123d edge or wire."""
+        return _curve(tuple(curve_edges(self.rail_p_curve)), "P")
+
+    @property
+    def rail_q(self) -> Any:
+        """Q as it lies on the upper."""
+        return _curve(tuple(curve_edges(self.rail_q_curve)), "Q")
+
+
+def _curve(edges: tuple[TopoDS_Edge, ...], label: str) -> Any:
+    from wrinkle_cad.cad.build123d_objects import to_build123d
+
+    return to_build123d(edges[0] if len(edges) == 1 else edge_row(edges), label=label)

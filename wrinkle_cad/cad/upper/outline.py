@@ -1,0 +1,177 @@
+"""The outline of an opening: two sides along the rails and two ends, as points on the upper.
+
+A side follows its rail, moved outward (away from the other rail) by the margin. The margin fades
+to nothing at both ends of the rails, so that sides and rails meet there: the opening is a lens
+around the strip. An end is the nearest curve on the upper to the straight end bridge, or nothing
+where the rails meet in a point or end on the upper's own border.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from wrinkle_cad import settings
+from wrinkle_cad.cad.rail.directrix import Directrix
+from wrinkle_cad.errors import InputError
+
+from .projection import Feet, UpperFaces
+
+Floats = NDArray[np.float64]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Side:
+    """One line of the outline, from the start of the strip to its end, or from P to Q."""
+
+    name: str
+    """``p``, ``q``, ``start`` or ``end``."""
+    points: Floats
+    """(k, 3) mm, on the upper."""
+    normals: Floats
+    """(k, 3) unit normals of the upper."""
+    inward: Floats
+    """(k, 3) unit vectors along the upper, into the opening."""
+    faces: NDArray[np.int64]
+    """(k,) index of the face that each point lies on."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Rail:
+    """A rail as it lies on the upper."""
+
+    shares: Floats
+    """(k,) arc length from its start, as a share of the whole, 0 to 1."""
+    feet: Feet
+    """Where its points lie on the upper."""
+    tangents: Floats
+    """(k, 3) unit tangents."""
+    length: float
+    """mm."""
+
+    @property
+    def points(self) -> Floats:
+        """(k, 3) mm."""
+        return self.feet.points
+
+
+def rail_on(upper: UpperFaces, directrix: Directrix, name: str) -> Rail:
+    """Returns a directrix as it lies on the upper, at points even in its arc length.
+
+    Raises:
+        InputError: all its feet are one point.
+    """
+    parameters = _even_parameters(directrix, settings.RAIL_POINTS)
+    feet = upper.feet(directrix.point_at(parameters))
+    steps = np.linalg.norm(np.diff(feet.points, axis=0), axis=1)
+    length = float(steps.sum())
+    if not length > settings.RAIL_LENGTH_MIN:
+        raise InputError(
+            f"rail {name} - its feet on the upper are one point, length {length:.3g} mm - more than"
+            f" {settings.RAIL_LENGTH_MIN:.0e} mm is needed - draw it along the upper"
+        )
+    shares = np.concatenate(([0.0], np.cumsum(steps))) / length
+    return Rail(shares, feet, unit(np.gradient(feet.points, axis=0)), length)
+
+
+def _even_parameters(directrix: Directrix, count: int) -> Floats:
+    fine = np.linspace(*directrix.interval, 8 * count)
+    steps = np.linalg.norm(np.diff(directrix.point_at(fine), axis=0), axis=1)
+    arc = np.concatenate(([0.0], np.cumsum(steps)))
+    even: Floats = np.interp(np.linspace(0.0, arc[-1], count), arc, fine)
+    return even
+
+
+def across_rail(rail: Rail, other: Rail, names: tuple[str, str]) -> Floats:
+    """Returns (k, 3) unit vectors along the upper, across a rail, towards the other rail.
+
+    Raises:
+        InputError: the rails cross, or enclose no area.
+    """
+    lateral = unit(np.cross(rail.feet.normals, rail.tangents))
+    gap = np.linalg.norm(rail.points[:, None] - other.points[None], axis=2)
+    nearest = gap.argmin(axis=1)
+    offset = ((other.points[nearest] - rail.points) * lateral).sum(axis=1)
+    width = float(np.abs(offset).max())
+    if width <= settings.WIDTH_PER_LENGTH_MIN * rail.length:
+        raise InputError(
+            f"rails {names[0]} and {names[1]} - they enclose no area: largest distance"
+            f" {width:.3g} mm - more than {settings.WIDTH_PER_LENGTH_MIN * rail.length:.3g} mm is"
+            " needed - move them apart"
+        )
+    sign = np.sign(offset[np.abs(offset).argmax()])
+    # A step of the samples is the resolution at which the nearest point is known.
+    slack = rail.length / (len(rail.points) - 1)
+    against = (offset * sign < -settings.WIDTH_PER_LENGTH_MIN * rail.length) & (
+        np.minimum(rail.shares, 1.0 - rail.shares) * rail.length > slack
+    )
+    if against.any():
+        at = int(np.argmin(offset * sign))
+        crossings = _sign_changes(offset, settings.WIDTH_PER_LENGTH_MIN * rail.length)
+        raise InputError(
+            f"rails {names[0]} and {names[1]} - they cross {crossings} times, by up to"
+            f" {abs(offset[at]):.3g} mm at {rail.shares[at] * rail.length:.4g} mm along"
+            f" {names[0]} - 0 mm is the limit - keep one on one side of the other"
+        )
+    return np.asarray(lateral * sign, dtype=np.float64)
+
+
+def _sign_changes(offset: Floats, nothing: float) -> int:
+    signs = np.sign(offset[np.abs(offset) > nothing])
+    return int((signs[1:] != signs[:-1]).sum())
+
+
+def faded_margin(shares: Floats, margin: float, fade: float) -> Floats:
+    """Returns (k,) mm: the margin at (k,) shares of the arc length, 0 at both ends.
+
+    It rises as a quarter of a sine over the share ``fade`` of the length, so that side and rail
+    part at an angle: where they part tangentially, the band between them begins as a needle.
+    """
+    near = np.minimum(shares, 1.0 - shares)
+    return np.asarray(margin * np.sin(0.5 * np.pi * np.clip(near / fade, 0.0, 1.0)))
+
+
+def side_of(upper: UpperFaces, rail: Rail, toward: Floats, margin: Floats, name: str) -> Side:
+    """Returns the side of an outline along a rail, ``margin`` (k,) mm outside of it."""
+    if not (margin > 0.0).any():
+        return Side(name, rail.points, rail.feet.normals, toward, rail.feet.faces)
+    feet = upper.feet(rail.points - margin[:, None] * toward)
+    points, normals = feet.points.copy(), feet.normals.copy()
+    points[[0, -1]], normals[[0, -1]] = rail.points[[0, -1]], rail.feet.normals[[0, -1]]
+    tangents = unit(np.gradient(points, axis=0))
+    inward = unit(np.cross(normals, tangents))
+    inward *= np.sign((inward * toward).sum(axis=1))[:, None]
+    return Side(name, points, normals, inward, feet.faces)
+
+
+def end_between(upper: UpperFaces, p: Side, q: Side, at: int, name: str) -> Side | None:
+    """Returns the end of an outline from P to Q at index ``at`` (0 or -1) of both, if it has one.
+
+    It is the projection of the straight end bridge; None where the rails meet.
+    """
+    bridge = np.array([p.points[at], q.points[at]])
+    width = float(np.linalg.norm(bridge[1] - bridge[0]))
+    length = float(np.linalg.norm(np.diff(p.points, axis=0), axis=1).sum())
+    if width <= settings.MEETING_PER_LENGTH * length:
+        return None
+    shares = np.linspace(0.0, 1.0, settings.END_POINTS)[:, None]
+    feet = upper.feet((1.0 - shares) * bridge[0] + shares * bridge[1])
+    points, normals = feet.points.copy(), feet.normals.copy()
+    points[[0, -1]] = bridge
+    normals[0], normals[-1] = p.normals[at], q.normals[at]
+    ahead = 1 if at == 0 else -1
+    onward = 0.5 * (
+        p.points[at + 3 * ahead] + q.points[at + 3 * ahead] - p.points[at] - q.points[at]
+    )
+    inward = unit(np.cross(normals, unit(np.gradient(points, axis=0))))
+    inward *= np.sign(inward @ onward)[:, None]
+    return Side(name, points, normals, inward, feet.faces)
+
+
+def unit(vectors: Floats) -> Floats:
+    """Returns (k, 3) vectors divided by their lengths; zero where there is none."""
+    lengths = np.linalg.norm(vectors, axis=1, keepdims=True)
+    scaled: Floats = vectors / np.where(lengths > 0.0, lengths, 1.0)
+    return scaled

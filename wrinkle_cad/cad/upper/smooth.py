@@ -1,0 +1,40 @@
+"""One smooth B-spline through points; directrices as edges again."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+from OCP.BRepBuilderAPI import BRepBuilderAPI_MakeEdge, BRepBuilderAPI_MakeWire
+from OCP.TopoDS import TopoDS_Edge, TopoDS_Shape
+from scipy.interpolate import make_interp_spline
+
+from wrinkle_cad.cad.kernel.splines import make_curve
+from wrinkle_cad.cad.kernel.topology import make_compound
+from wrinkle_cad.cad.rail.directrix import Directrix
+
+Floats = NDArray[np.float64]
+
+
+def smooth_edge(points: Floats) -> TopoDS_Edge:
+    """Returns a cubic B-spline edge through (k, 3) points in mm, k >= 4, C2 throughout."""
+    steps = np.linalg.norm(np.diff(points, axis=0), axis=1)
+    spline = make_interp_spline(np.concatenate(([0.0], np.cumsum(steps))), points, k=3)
+    knots, counts = np.unique(spline.t, return_counts=True)
+    return BRepBuilderAPI_MakeEdge(make_curve(spline.c, knots, counts, 3)).Edge()
+
+
+def curve_edges(directrix: Directrix) -> list[TopoDS_Edge]:
+    """Returns a directrix as edges in a row."""
+    return [BRepBuilderAPI_MakeEdge(curve).Edge() for curve in directrix.curves]
+
+
+def edge_row(edges: Sequence[TopoDS_Edge]) -> TopoDS_Shape:
+    """Returns edges as one wire, or as a compound where they do not meet."""
+    wire = BRepBuilderAPI_MakeWire()
+    for edge in edges:
+        wire.Add(edge)
+        if not wire.IsDone():
+            return make_compound(edges)
+    return wire.Wire()

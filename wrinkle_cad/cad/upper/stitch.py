@@ -1,0 +1,231 @@
+"""Stitches wrinkles into an upper that was carved for them (Fig. 11d of the paper)."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from itertools import pairwise
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from OCP.TopoDS import TopoDS_Edge, TopoDS_Face, TopoDS_Shape, TopoDS_Shell
+
+from wrinkle_cad import settings
+from wrinkle_cad.cad.kernel import topology as kernel
+from wrinkle_cad.cad.kernel.connectivity import edge_ends
+from wrinkle_cad.cad.kernel.face_areas import face_areas
+from wrinkle_cad.cad.rail.directrix import Directrix
+from wrinkle_cad.errors import CadError, InputError
+
+from .bands import Band, StripLike, make_band
+from .border_check import compared_border
+from .carve import carve_shape
+from .end_fans import end_fan
+from .opening import Opening
+from .seam_angle import SeamAngle, seam_angles
+from .sew import Sewn, sew
+
+Floats = NDArray[np.float64]
+STEP = "stitch the wrinkle into the upper"
+BODY = "body"
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class StitchReport:
+    """What a stitched upper was measured to be."""
+
+    face_count: int
+    """Faces of the shell."""
+    free_edges_before: int
+    """Free edges of the upper."""
+    free_edges_after: int
+    """Free edges of the shell: the upper's own, in more pieces where a strip ends on them."""
+    free_length_before_mm: float
+    """Their length in the upper."""
+    free_length_after_mm: float
+    """Their length in the shell."""
+    max_edge_tolerance_mm: float
+    """The largest tolerance of an edge of the shell."""
+    area_balance_mm2: float
+    """Body and removed part together, less the upper."""
+    area_mm2: float
+    """Area of the shell."""
+    is_valid: bool
+    """Whether the kernel's own check finds no fault."""
+    seams: tuple[SeamAngle, ...]
+    """The angles along all seams."""
+    bands: tuple[Band, ...]
+    """The bands, in the order of the openings, P before Q."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Stitched:
+    """An upper with its wrinkles."""
+
+    shell_shape: TopoDS_Shell
+    """One shell, its normals as in the upper."""
+    report: StitchReport
+    """What it was measured to be."""
+    parts: tuple[tuple[str, tuple[TopoDS_Face, ...]], ...]
+    """The shell's faces by what they are: ``body``, then per strip its name and bands."""
+    source: Any
+    """The object that the upper came in."""
+
+    @property
+    def shell(self) -> Any:
+        """The shell as build123d has it, with the upper's name and colour."""
+        from wrinkle_cad.cad.exchange.likeness import alike
+
+        return alike(self.shell_shape, self.source, "upper")
+
+
+def stitch(
+    openings: Opening | Sequence[Opening],
+    strips: StripLike | Sequence[StripLike],
+    *,
+    tolerance: float = settings.TOLERANCE,
+) -> Stitched:
+    """Joins an upper's body and the wrinkles in its openings to one shell.
+
+    Where a profile leaves its opening's boundary, a band closes the gap; where the end bridge of a
+    wrinkle leaves the opening's end, a fan does. Several openings may have been carved one after
+    the other from each other's bodies, or each from the same upper.
+
+    Args:
+        openings: one, or several in order.
+        strips: one per opening, between its profiles, which run as its rails do.
+        tolerance: mm; chords of the bands along the openings.
+
+    Raises:
+        InputError: not as many strips as openings; a profile that does not belong to its opening;
+            a band without width or that folds over.
+        CadError: the parts do not become one valid shell with the upper's border.
+    """
+    given = [openings] if isinstance(openings, Opening) else list(openings)
+    wanted = list(strips) if isinstance(strips, Sequence) else [strips]
+    if len(given) != len(wanted) or not given:
+        raise InputError(
+            f"stitch - found {len(given)} openings and {len(wanted)} strips - one strip per opening"
+            " is needed - pass lists of equal length"
+        )
+    chained = _carved_in_turn(given)
+    faces, parts, bands = _all_faces(chained, wanted, tolerance)
+    sewn = sew(faces, settings.SEWING)
+    return _stitched(given, chained, sewn, parts, bands)
+
+
+def _carved_in_turn(openings: Sequence[Opening]) -> list[Opening]:
+    """Returns the openings, each carved from the body of the one before."""
+    chained = [openings[0]]
+    for opening in openings[1:]:
+        body = chained[-1].body_shape
+        if not opening.given_shape.IsSame(body):
+            opening = carve_shape(body, opening.request, source=opening.source)
+        chained.append(opening)
+    return chained
+
+
+def _all_faces(
+    openings: Sequence[Opening], strips: Sequence[StripLike], tolerance: float
+) -> tuple[list[TopoDS_Face], list[str], list[Band]]:
+    """Returns the faces to be sewn, what part each is of, and the bands."""
+    faces = kernel.faces_of(openings[-1].body_shape)
+    parts, bands = [BODY] * len(faces), list[Band]()
+    for opening, strip in zip(openings, strips, strict=True):
+        name = strip.name
+        pieces: list[tuple[str, Sequence[TopoDS_Face]]] = [
+            (name, kernel.faces_of(strip.topods_shell()))
+        ]
+        ends = []
+        for i, (edges, profile, samples) in enumerate(
+            (
+                (opening.p_edges, strip.p, strip.p_samples),
+                (opening.q_edges, strip.q, strip.q_samples),
+            )
+        ):
+            ends.append(_side_ends(edges, profile, "PQ"[i]))
+            band = make_band(opening, i, profile, samples, tolerance=tolerance)
+            if band is not None:
+                part = f"{name} band {band.name}"
+                bands.append(replace(band, name=part))
+                pieces.append((part, kernel.faces_of(band.shell)))
+        for at, edges in ((0, opening.start_edges), (1, opening.end_edges)):
+            bridge = np.array([strip.p_samples.points[-at], strip.q_samples.points[-at]])
+            corners = np.array([ends[0][at], ends[1][at]])
+            pieces.append((f"{name} end {at + 1}", end_fan(edges, bridge, corners)))
+        for part, made in pieces:
+            faces.extend(made)
+            parts.extend([part] * len(made))
+    return faces, parts, bands
+
+
+def _side_ends(edges: Sequence[TopoDS_Edge], profile: Directrix, rail: str) -> Floats:
+    """Returns (2, 3) mm: where a side starts and ends; checks that the profile is its own."""
+    ends = np.array([edge_ends(edges[0])[0], edge_ends(edges[-1])[1]])
+    tips = profile.point_at(np.array(profile.interval))
+    gap = float(np.linalg.norm(tips - ends, axis=1).max())
+    if gap > settings.RAIL_OFF_UPPER:
+        raise InputError(
+            f"profile {rail} - its ends are {gap:.3g} mm from those of the opening - the limit is"
+            f" {settings.RAIL_OFF_UPPER:.3g} mm - pass the profiles that belong to this opening"
+        )
+    return ends
+
+
+def _stitched(
+    openings: Sequence[Opening],
+    chained: Sequence[Opening],
+    sewn: Sewn,
+    parts: Sequence[str],
+    bands: Sequence[Band],
+) -> Stitched:
+    upper = chained[0].upper_shape
+    grouped: dict[str, list[TopoDS_Face]] = {}
+    for face, part in zip(sewn.faces, parts, strict=True):
+        grouped.setdefault(part, []).append(face)
+    border = compared_border(
+        upper,
+        sewn.shell,
+        sum(opening.lost_border for opening in chained),
+        sum(_gaps_bridged(opening) for opening in chained),
+    )
+    kernel.check_valid(sewn.shell, STEP)
+    report = StitchReport(
+        face_count=len(sewn.faces),
+        free_edges_before=border.before,
+        free_edges_after=border.after,
+        free_length_before_mm=border.length_before,
+        free_length_after_mm=border.length_after,
+        max_edge_tolerance_mm=_checked_tolerance(sewn.shell, upper),
+        area_balance_mm2=sum(opening.area_balance for opening in chained),
+        area_mm2=chained[-1].areas[1]
+        + sum(face_areas(sewn.faces[parts.count(BODY) :], settings.AREA_BALANCE)),
+        is_valid=True,
+        seams=seam_angles(sewn.faces, parts),
+        bands=tuple(bands),
+    )
+    parted = tuple((name, tuple(held)) for name, held in grouped.items())
+    return Stitched(sewn.shell, report, parted, openings[0].source)
+
+
+def _gaps_bridged(opening: Opening) -> float:
+    """Returns mm: how much new border stands across gaps of the upper that an opening meets."""
+    bridged = 0.0
+    for edges in (opening.p_edges, opening.q_edges):
+        for before, after in pairwise(edges):
+            gap = float(np.linalg.norm(edge_ends(after)[0] - edge_ends(before)[1]))
+            bridged += gap if gap > settings.GAP_CROSSED else 0.0
+    return bridged
+
+
+def _checked_tolerance(shell: TopoDS_Shell, upper: TopoDS_Shape) -> float:
+    found, own = kernel.tolerance_of(shell), kernel.tolerance_of(upper)
+    limit = max(settings.EDGE_TOLERANCE_LIMIT, own)
+    if found > limit:
+        raise CadError(
+            STEP,
+            f"the largest edge tolerance is {found:.2g} mm, the upper's own {own:.2g} mm -"
+            f" {limit:.2g} mm is the limit - change the margin, or move the rails a little",
+        )
+    return found
