@@ -44,9 +44,9 @@ def draw_pattern(folder: Path) -> None:
     import matplotlib.pyplot as plt
 
     from wrinkle_cad import PieceSettings
-    from wrinkle_cad.cut_pattern import pattern_of_strips
     from wrinkle_cad.pattern.piece.options import NotchRule
     from wrinkle_cad.report.figures import plot_pattern
+    from wrinkle_cad.wrinkle.cut_pattern import pattern_of_strips
 
     result = stitched_upper(folder)
     rule = NotchRule(count=5)

@@ -47,7 +47,7 @@ class Sewn:
 
 def sewn(name: str, folder: Path) -> Sewn:
     from wrinkle_cad.cad.exchange.choose import choose_inputs
-    from wrinkle_cad.cut_pattern import pattern_of_strips
+    from wrinkle_cad.wrinkle.cut_pattern import pattern_of_strips
 
     toml = EXAMPLES / name / "job.toml"
     options = {"output_dir": folder, "notches": 4, "seam_allowance": 5}

@@ -13,9 +13,9 @@ from .settings import VERSION
 __version__ = VERSION
 
 _MODULE_OF: Final = {
-    "WrinkleStrip": "wrinkle",
-    "StripReport": "strip_report",
-    "Pattern": "cut_pattern",
+    "WrinkleStrip": "wrinkle.wrinkle_strip",
+    "StripReport": "wrinkle.strip_report",
+    "Pattern": "wrinkle.cut_pattern",
     "PieceSettings": "pattern.piece.options",
     "read_cad": "cad.exchange.read",
     "carve": "cad.upper.carve",

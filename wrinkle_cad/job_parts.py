@@ -18,12 +18,12 @@ from . import settings
 if TYPE_CHECKING:
     from wrinkle_cad.cad.exchange.choose import Chosen
     from wrinkle_cad.cad.exchange.shapes import CadFile
-    from wrinkle_cad.cut_pattern import Pattern
     from wrinkle_cad.pattern.formats.contours import Curves
     from wrinkle_cad.pattern.formats.dxf import DxfVersion
     from wrinkle_cad.pattern.piece.options import PieceSettings
     from wrinkle_cad.report.material import Limits
-    from wrinkle_cad.wrinkle import WrinkleStrip
+    from wrinkle_cad.wrinkle.cut_pattern import Pattern
+    from wrinkle_cad.wrinkle.wrinkle_strip import WrinkleStrip
 
 
 def output_kinds(job: Job) -> tuple[str, ...]:
@@ -65,7 +65,7 @@ def strip_of(job: Job, p: object, q: object, name: str) -> WrinkleStrip:
         InputError: a curve cannot be used.
         CadError: the kernel could not evaluate a curve.
     """
-    from wrinkle_cad.wrinkle import WrinkleStrip
+    from wrinkle_cad.wrinkle.wrinkle_strip import WrinkleStrip
 
     return WrinkleStrip(
         p,

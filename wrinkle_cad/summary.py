@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from wrinkle_cad.cad.exchange.choose import Chosen
     from wrinkle_cad.cad.exchange.shapes import CadFile
     from wrinkle_cad.report.material import Limits
-    from wrinkle_cad.strip_report import StripReport
+    from wrinkle_cad.wrinkle.strip_report import StripReport
 
 
 def summary_of(

@@ -20,8 +20,8 @@ from . import settings
 if TYPE_CHECKING:
     from wrinkle_cad.cad.exchange.choose import Chosen
     from wrinkle_cad.cad.exchange.shapes import CadFile
-    from wrinkle_cad.strip_report import StripReport
-    from wrinkle_cad.triangulated_strip import TriangulatedStrip
+    from wrinkle_cad.wrinkle.strip_report import StripReport
+    from wrinkle_cad.wrinkle.triangulated_strip import TriangulatedStrip
     from wrinkle_cad.writing import Made
 
 _PHASES: Final = ("read", "strip", "surface", "pattern", "judge", "write", "page")
@@ -84,8 +84,8 @@ def _read(job: Job) -> tuple[CadFile, Chosen]:
 
 
 def _make(job: Job, chosen: Chosen, clock: PhaseClock) -> Made:
-    from wrinkle_cad.cut_pattern import pattern_of_strips
     from wrinkle_cad.job_parts import limits_of, piece_settings_of, strip_of
+    from wrinkle_cad.wrinkle.cut_pattern import pattern_of_strips
     from wrinkle_cad.writing import Made
 
     with clock.phase("strip"):

@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Any, cast
 from wrinkle_cad.findings import Finding
 from wrinkle_cad.job import Job
 from wrinkle_cad.job_parts import strip_of
-from wrinkle_cad.triangulated_strip import TriangulatedStrip
-from wrinkle_cad.wrinkle import WrinkleStrip
+from wrinkle_cad.wrinkle.triangulated_strip import TriangulatedStrip
+from wrinkle_cad.wrinkle.wrinkle_strip import WrinkleStrip
 
 from . import settings
 

@@ -29,7 +29,7 @@ from wrinkle_cad.cad.upper.outline import Side
 from wrinkle_cad.cad.upper.profiles import profile_curves
 from wrinkle_cad.cad.upper.sew import Sewn
 from wrinkle_cad.cad.upper.smooth import smooth_edge
-from wrinkle_cad.wrinkle import WrinkleStrip
+from wrinkle_cad.wrinkle.wrinkle_strip import WrinkleStrip
 
 INPUT = Path(__file__).parents[2] / "shoe_examples" / "one_wrinkle" / "one_wrinkle.step"
 ROUNDS = 5

@@ -18,7 +18,7 @@ from wrinkle_cad.cad.upper.opening import Opening
 from wrinkle_cad.cad.upper.profiles import profile_curves
 from wrinkle_cad.cad.upper.smooth import smooth_edge
 from wrinkle_cad.cad.upper.stitch import Stitched, stitch
-from wrinkle_cad.wrinkle import WrinkleStrip
+from wrinkle_cad.wrinkle.wrinkle_strip import WrinkleStrip
 
 
 @cache

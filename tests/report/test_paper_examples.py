@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from wrinkle_cad.report.compare import Comparison
-from wrinkle_cad.wrinkle import WrinkleStrip
+from wrinkle_cad.wrinkle.wrinkle_strip import WrinkleStrip
 
 FOLDER = Path(__file__).parents[2] / "shoe_examples" / "paper_examples"
 

@@ -44,7 +44,7 @@ from wrinkle_cad.cad.upper.projection import UpperFaces
 from wrinkle_cad.cad.upper.smooth import smooth_edge
 from wrinkle_cad.cad.upper.stitch import Stitched, stitch
 from wrinkle_cad.errors import CadError, InputError
-from wrinkle_cad.wrinkle import WrinkleStrip
+from wrinkle_cad.wrinkle.wrinkle_strip import WrinkleStrip
 
 
 def stitched(carved: Opening, **waves: object) -> Stitched:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+from wrinkle_cad import settings
 from wrinkle_cad.cad.rail.directrix import (
     check_distinct,
     make_directrix,
@@ -12,9 +13,8 @@ from wrinkle_cad.cad.rail.directrix import (
 )
 from wrinkle_cad.findings import Finding
 from wrinkle_cad.strip.triangulation import triangulate
-from wrinkle_cad.triangulated_strip import TriangulatedStrip, check_surface
 
-from . import settings
+from .triangulated_strip import TriangulatedStrip, check_surface
 
 
 class WrinkleStrip(TriangulatedStrip):

@@ -8,14 +8,13 @@ from datetime import datetime
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Protocol
 
+from wrinkle_cad import settings
 from wrinkle_cad.findings import Finding
 from wrinkle_cad.pattern.piece.making import make_pieces, rail_corners
 from wrinkle_cad.pattern.piece.options import NotchRule, PieceSettings
 from wrinkle_cad.pattern.piece.piece import PatternPiece
 from wrinkle_cad.pattern.piece.stacking import laid_out
 from wrinkle_cad.strip.sampled_strip import SampledStrip
-
-from . import settings
 
 if TYPE_CHECKING:
     from wrinkle_cad.pattern.formats.contours import Curves

@@ -11,23 +11,24 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from wrinkle_cad import settings
 from wrinkle_cad.errors import CadError, InputError
 from wrinkle_cad.findings import Finding
 from wrinkle_cad.strip.convexity import validity_matrix
 from wrinkle_cad.strip.flat.unrolling import Unrolling, unroll, unroll_cones
 from wrinkle_cad.strip.gaps import find_gaps
 from wrinkle_cad.strip.triangulation import Triangulation, triangulate
-from wrinkle_cad.strip_report import Role, StripReport, report_on
 
-from . import settings
+from .strip_report import Role, StripReport, report_on
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
     from wrinkle_cad.cad.rail.directrix import Directrix
-    from wrinkle_cad.cut_pattern import Pattern
     from wrinkle_cad.pattern.piece.options import PieceSettings
     from wrinkle_cad.strip.curve.sampling import Samples
+
+    from .cut_pattern import Pattern
 
 
 class TriangulatedStrip:
@@ -229,8 +230,9 @@ class TriangulatedStrip:
             InputError: the flat strip covers itself and the settings forbid to split it, or an
                 option is unknown or out of its range.
         """
-        from wrinkle_cad.cut_pattern import pattern_of_strips
         from wrinkle_cad.pattern.piece.options import PieceSettings
+
+        from .cut_pattern import pattern_of_strips
 
         known = PieceSettings.__dataclass_fields__
         for name in options:
