@@ -10,8 +10,8 @@ from wrinkle_cad.cad.exchange.choose import choose_inputs
 from wrinkle_cad.cad.exchange.read import read_cad
 from wrinkle_cad.cad.exchange.shapes import Part
 from wrinkle_cad.cad.exchange.write import write_step
-from wrinkle_cad.job import make_job
-from wrinkle_cad.wrinkled_upper import WrinkledUpper, wrinkle_upper
+from wrinkle_cad.job.job import make_job
+from wrinkle_cad.job.wrinkled_upper import WrinkledUpper, wrinkle_upper
 
 BODY = (0.60, 0.38, 0.22)
 WRINKLE = (0.74, 0.51, 0.31)

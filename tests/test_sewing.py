@@ -22,12 +22,12 @@ from wrinkle_cad.cad.kernel.topology import (
     vertices_of,
 )
 from wrinkle_cad.cad.rail.directrix import Directrix, make_directrix
-from wrinkle_cad.job import Job, make_job
-from wrinkle_cad.job_parts import limits_of, piece_settings_of
-from wrinkle_cad.outcome import JobDone
+from wrinkle_cad.job.job import Job, make_job
+from wrinkle_cad.job.outcome import JobDone
+from wrinkle_cad.job.parts import limits_of, piece_settings_of
+from wrinkle_cad.job.workflow import run_job
+from wrinkle_cad.job.wrinkled_upper import wrinkle_upper
 from wrinkle_cad.pattern.piece.piece import PatternPiece
-from wrinkle_cad.workflow import run_job
-from wrinkle_cad.wrinkled_upper import wrinkle_upper
 
 EXAMPLES = Path(__file__).parent.parent / "shoe_examples"
 ON_UPPER = ("one_wrinkle", "three_wrinkles", "across_seam", "feather_to_feather")

@@ -28,7 +28,7 @@ from wrinkle_cad.batch.plan import PlannedJob, plan_batch
 from wrinkle_cad.batch.rehearsal import DONE_BEFORE, TO_DO, rehearse
 from wrinkle_cad.batch.summary import total_seconds
 from wrinkle_cad.errors import InputError
-from wrinkle_cad.job import read_job_toml
+from wrinkle_cad.job.job import read_job_toml
 
 DONE: Final = 0
 FAILED: Final = 1

@@ -21,7 +21,7 @@ from wrinkle_cad.errors import WrinkleError
 from wrinkle_cad.job_arguments import add_job_arguments, job_keywords
 
 if TYPE_CHECKING:
-    from wrinkle_cad.outcome import JobDone
+    from wrinkle_cad.job.outcome import JobDone
 
 DONE: Final = 0
 FAILED: Final = 1
@@ -139,7 +139,7 @@ def _add_debug(parser: argparse.ArgumentParser) -> None:
 
 class _Version(argparse.Action):
     def __call__(self, parser: argparse.ArgumentParser, *_: object) -> None:
-        from wrinkle_cad.versions import installed_versions
+        from wrinkle_cad.job.versions import installed_versions
 
         for name, version in installed_versions().items():
             print(f"{name} {version}")
@@ -147,10 +147,10 @@ class _Version(argparse.Action):
 
 
 def _run(given: argparse.Namespace) -> int:
-    from wrinkle_cad.job import make_job
-    from wrinkle_cad.outcome import JobFailed
+    from wrinkle_cad.job.job import make_job
+    from wrinkle_cad.job.outcome import JobFailed
+    from wrinkle_cad.job.workflow import run_job
     from wrinkle_cad.screen import progress_on_screen
-    from wrinkle_cad.workflow import run_job
 
     job = make_job(given.input, job_keywords(given, os.environ), given.job)
     with progress_on_screen(is_wanted=not given.quiet) as progress:
@@ -196,7 +196,7 @@ def _batch(given: argparse.Namespace) -> int:
 
 
 def _inspect(given: argparse.Namespace) -> int:
-    from wrinkle_cad.inspection import inspect_file
+    from wrinkle_cad.job.inspection import inspect_file
     from wrinkle_cad.screen import print_inspection
 
     inspection = inspect_file(given.input, unit=given.unit, p=given.p, q=given.q, upper=given.upper)
@@ -208,8 +208,8 @@ def _inspect(given: argparse.Namespace) -> int:
 
 
 def _compare(given: argparse.Namespace) -> int:
-    from wrinkle_cad.comparison import compare_job
-    from wrinkle_cad.job import make_job
+    from wrinkle_cad.job.comparison import compare_job
+    from wrinkle_cad.job.job import make_job
     from wrinkle_cad.screen import print_comparison
 
     job = make_job(given.input, job_keywords(given, os.environ))

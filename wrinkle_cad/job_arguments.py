@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from wrinkle_cad.errors import InputError
-from wrinkle_cad.job import Job
+from wrinkle_cad.job.job import Job
 
 from . import settings
 

@@ -9,8 +9,8 @@ from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from wrinkle_cad.inspection import Inspection
-    from wrinkle_cad.outcome import Progress
+    from wrinkle_cad.job.inspection import Inspection
+    from wrinkle_cad.job.outcome import Progress
 
 
 def one_line(text: str) -> str:

@@ -9,9 +9,9 @@ import signal
 import numpy as np
 
 from wrinkle_cad.errors import CadError
-from wrinkle_cad.job import Job
-from wrinkle_cad.outcome import JobDone, JobFailed
-from wrinkle_cad.workflow import run_job
+from wrinkle_cad.job.job import Job
+from wrinkle_cad.job.outcome import JobDone, JobFailed
+from wrinkle_cad.job.workflow import run_job
 
 
 def faulty_job(job: Job, *, progress: object = None) -> JobDone | JobFailed:

@@ -16,8 +16,8 @@ from dataclasses import replace
 from pathlib import Path
 
 from wrinkle_cad.errors import CadError, ExportError
-from wrinkle_cad.job import Job
-from wrinkle_cad.outcome import JobDone, JobFailed, Progress
+from wrinkle_cad.job.job import Job
+from wrinkle_cad.job.outcome import JobDone, JobFailed, Progress
 
 PHASES = ("read", "strip", "surface", "write", "page")
 KINDS = ("step", "dxf", "json", "html")

@@ -19,7 +19,7 @@ from wrinkle_cad.batch.events import FileFinished, FilePhase
 from wrinkle_cad.batch.manifest import Record
 from wrinkle_cad.batch.task import Task
 from wrinkle_cad.errors import InputError
-from wrinkle_cad.job import Job
+from wrinkle_cad.job.job import Job
 
 LIMITS = CrewLimits(timeout_s=4.0, memory_gib=2.0)
 

@@ -11,8 +11,8 @@ import pytest
 from tests.batch.stand_ins import KINDS, job_by_content
 from wrinkle_cad.batch.executor import run_batch
 from wrinkle_cad.errors import InputError
-from wrinkle_cad.job import Job
-from wrinkle_cad.outcome import JobDone, JobFailed
+from wrinkle_cad.job.job import Job
+from wrinkle_cad.job.outcome import JobDone, JobFailed
 
 
 def make_jobs(folder: Path, *contents: str) -> list[Job]:

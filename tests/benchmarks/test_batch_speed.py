@@ -16,9 +16,9 @@ from wrinkle_cad.batch.ending import CrewLimits
 from wrinkle_cad.batch.events import BatchEvent, FileFinished, Listener
 from wrinkle_cad.batch.inputs import find_sources
 from wrinkle_cad.batch.plan import plan_batch
-from wrinkle_cad.job import Job
-from wrinkle_cad.outcome import JobDone
-from wrinkle_cad.workflow import run_job
+from wrinkle_cad.job.job import Job
+from wrinkle_cad.job.outcome import JobDone
+from wrinkle_cad.job.workflow import run_job
 
 FILES = 60
 WARM_UP = 4

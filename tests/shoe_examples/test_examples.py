@@ -18,9 +18,9 @@ from tests.cad.stitch_checks import freecad_report, reread, shell_faults
 from wrinkle_cad.cad.exchange.read import read_cad
 from wrinkle_cad.cad.exchange.write import write_step
 from wrinkle_cad.cad.kernel import topology as kernel
-from wrinkle_cad.job import make_job
-from wrinkle_cad.outcome import JobDone
-from wrinkle_cad.workflow import run_job
+from wrinkle_cad.job.job import make_job
+from wrinkle_cad.job.outcome import JobDone
+from wrinkle_cad.job.workflow import run_job
 
 FOLDER = Path(__file__).parents[2] / "shoe_examples"
 OUTPUTS = {".step", ".stl", ".dxf", ".json", ".html"}

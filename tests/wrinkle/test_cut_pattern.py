@@ -9,10 +9,10 @@ import pytest
 from wrinkle_cad import Pattern, PieceSettings, WrinkleStrip
 from wrinkle_cad.cad.exchange.choose import choose_inputs
 from wrinkle_cad.cad.exchange.read import read_cad
-from wrinkle_cad.job import Job
-from wrinkle_cad.job_parts import limits_of, piece_settings_of
+from wrinkle_cad.job.job import Job
+from wrinkle_cad.job.parts import limits_of, piece_settings_of
+from wrinkle_cad.job.wrinkled_upper import WrinkledUpper, wrinkle_upper
 from wrinkle_cad.wrinkle.cut_pattern import pattern_of_strips
-from wrinkle_cad.wrinkled_upper import WrinkledUpper, wrinkle_upper
 
 ON_UPPER = Path(__file__).parents[2] / "shoe_examples" / "one_wrinkle" / "one_wrinkle.step"
 JOB = Job(input=ON_UPPER, waves=5, height=3, margin=4)

@@ -11,9 +11,9 @@ from wrinkle_cad import settings
 from wrinkle_cad.errors import ExportError
 from wrinkle_cad.files.names import printable
 from wrinkle_cad.files.staging import discard_staging, leftovers, move_into_place, open_staging
-from wrinkle_cad.job import Job
-from wrinkle_cad.outcome import JobDone, JobFailed
-from wrinkle_cad.versions import installed_versions
+from wrinkle_cad.job.job import Job
+from wrinkle_cad.job.outcome import JobDone, JobFailed
+from wrinkle_cad.job.versions import installed_versions
 
 from .crew import Crew, Finished, Phase
 from .delivery import deliver, failed_record

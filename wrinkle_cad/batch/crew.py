@@ -20,7 +20,7 @@ from multiprocessing.connection import Connection
 from typing import Final, Protocol
 
 from wrinkle_cad import settings
-from wrinkle_cad.outcome import JobDone
+from wrinkle_cad.job.outcome import JobDone
 
 from .ending import MEMORY_ERRORS, CrewLimits, Ending, failure_of
 from .task import Task, TaskResult

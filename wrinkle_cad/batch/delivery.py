@@ -12,9 +12,9 @@ from typing import Any, Final
 from wrinkle_cad.errors import WrinkleError
 from wrinkle_cad.files.names import printable
 from wrinkle_cad.files.staging import commit_staging, discard_staging, flush_files, move_into_place
-from wrinkle_cad.job import Job
-from wrinkle_cad.outcome import JobDone, JobFailed
-from wrinkle_cad.outputs import check_outputs_are_ours
+from wrinkle_cad.job.job import Job
+from wrinkle_cad.job.outcome import JobDone, JobFailed
+from wrinkle_cad.job.outputs import check_outputs_are_ours
 
 from .manifest import OutputFile, Record, record_to_line
 from .task import TaskResult

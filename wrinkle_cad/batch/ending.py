@@ -9,8 +9,8 @@ from typing import Final
 from wrinkle_cad import settings
 from wrinkle_cad.errors import InputError
 from wrinkle_cad.files.names import printable
-from wrinkle_cad.job import Job
-from wrinkle_cad.outcome import JobFailed
+from wrinkle_cad.job.job import Job
+from wrinkle_cad.job.outcome import JobFailed
 
 from .worker import Confession
 

@@ -14,8 +14,8 @@ from wrinkle_cad import settings
 from wrinkle_cad.errors import InputError
 from wrinkle_cad.files.names import collision_key
 from wrinkle_cad.files.staging import discard_staging, open_staging
-from wrinkle_cad.job import Job
-from wrinkle_cad.outcome import JobDone, JobFailed
+from wrinkle_cad.job.job import Job
+from wrinkle_cad.job.outcome import JobDone, JobFailed
 
 from .crew import Crew, Event, Finished, WorkerCrew
 from .delivery import deliver

@@ -14,8 +14,8 @@ from concurrent.futures import (
 
 from wrinkle_cad import settings
 from wrinkle_cad.files.names import printable
-from wrinkle_cad.job import Job
-from wrinkle_cad.outcome import JobFailed
+from wrinkle_cad.job.job import Job
+from wrinkle_cad.job.outcome import JobFailed
 
 from .crew import Event, Finished
 from .task import Task, TaskResult, run_task

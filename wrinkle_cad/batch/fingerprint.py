@@ -9,7 +9,7 @@ from dataclasses import fields
 from pathlib import Path
 from typing import Any, Final
 
-from wrinkle_cad.job import Job
+from wrinkle_cad.job.job import Job
 
 _CHUNK: Final = 1 << 20
 _NOT_A_SETTING: Final = frozenset({"input", "output_dir"})

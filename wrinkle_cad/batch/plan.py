@@ -11,7 +11,7 @@ from typing import Any, Final, NamedTuple
 from wrinkle_cad import settings
 from wrinkle_cad.errors import JobError
 from wrinkle_cad.files.names import apply_mask, check_mask, collision_key, safe_folder, safe_name
-from wrinkle_cad.job import Job, make_job, read_job_toml
+from wrinkle_cad.job.job import Job, make_job, read_job_toml
 
 from .inputs import Source, split_name
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 
-from wrinkle_cad.versions import installed_versions
+from wrinkle_cad.job.versions import installed_versions
 
 from .conversion import base_record, is_up_to_date
 from .manifest import Manifest

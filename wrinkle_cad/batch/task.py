@@ -9,9 +9,9 @@ from pathlib import Path
 from typing import Final
 
 from wrinkle_cad.errors import JobError
-from wrinkle_cad.job import Job
-from wrinkle_cad.outcome import JobDone, JobFailed, Progress
-from wrinkle_cad.versions import installed_versions
+from wrinkle_cad.job.job import Job
+from wrinkle_cad.job.outcome import JobDone, JobFailed, Progress
+from wrinkle_cad.job.versions import installed_versions
 
 from .fingerprint import hash_file
 from .manifest import OutputFile
@@ -83,7 +83,7 @@ def _run_in_place(task: Task, progress: Progress | None) -> TaskResult:
 def _function_of(task: Task) -> JobFunction:
     if task.job_function is not None:
         return task.job_function
-    from wrinkle_cad.workflow import run_job
+    from wrinkle_cad.job.workflow import run_job
 
     return run_job
 

@@ -16,9 +16,9 @@ from wrinkle_cad.cad.exchange.shapes import FaceStyle, NamedShape, Part
 from wrinkle_cad.cad.exchange.write import write_step
 from wrinkle_cad.cad.kernel.topology import bounding_box, faces_of, make_compound
 from wrinkle_cad.cad.upper.carve import carve
-from wrinkle_cad.job import Job
-from wrinkle_cad.outcome import JobDone
-from wrinkle_cad.workflow import run_job
+from wrinkle_cad.job.job import Job
+from wrinkle_cad.job.outcome import JobDone
+from wrinkle_cad.job.workflow import run_job
 
 RED, GREEN, BLUE = (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)
 WIDTH = 40.0

@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 from wrinkle_cad.errors import JobError
-from wrinkle_cad.job import Job, make_job, read_job_toml
+from wrinkle_cad.job.job import Job, make_job, read_job_toml
 
 
 def test_the_outputs_are_named_after_the_input_without_its_suffixes() -> None:

@@ -5,10 +5,10 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any, Final
 
-from wrinkle_cad.job import Job
-from wrinkle_cad.job_parts import read_chosen, strip_of
-from wrinkle_cad.outputs import outputs_together
-from wrinkle_cad.summary import to_json
+from .job import Job
+from .outputs import outputs_together
+from .parts import read_chosen, strip_of
+from .summary import to_json
 
 _KINDS: Final = ("compare.json", "compare.html")
 

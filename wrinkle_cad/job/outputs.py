@@ -13,7 +13,8 @@ from typing import Any, Final
 
 from wrinkle_cad.errors import ExportError, JobError
 from wrinkle_cad.files.atomic import replace_together
-from wrinkle_cad.job import Job
+
+from .job import Job
 
 SCHEMA: Final = "wrinkle_cad/job"
 SCHEMA_VERSION: Final = 1

@@ -6,7 +6,7 @@ import platform
 from importlib import metadata
 from typing import Final
 
-from . import settings
+from wrinkle_cad import settings
 
 _DISTRIBUTIONS: Final = (
     "build123d",

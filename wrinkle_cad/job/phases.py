@@ -6,7 +6,7 @@ import time
 from collections.abc import Iterator
 from contextlib import contextmanager
 
-from wrinkle_cad.outcome import Progress
+from .outcome import Progress
 
 
 class PhaseClock:

@@ -8,12 +8,12 @@ from datetime import datetime
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, cast
 
+from wrinkle_cad import settings
 from wrinkle_cad.cad.kernel.loading import kernel_importable
 from wrinkle_cad.findings import Finding
-from wrinkle_cad.job import Job
-from wrinkle_cad.outputs import check_outputs_are_ours
 
-from . import settings
+from .job import Job
+from .outputs import check_outputs_are_ours
 
 if TYPE_CHECKING:
     from wrinkle_cad.cad.exchange.choose import Chosen

@@ -7,22 +7,23 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
+from wrinkle_cad import settings
 from wrinkle_cad.errors import JobError, WrinkleError
 from wrinkle_cad.findings import Finding
-from wrinkle_cad.job import Job
-from wrinkle_cad.outcome import JobDone, JobFailed, Progress
-from wrinkle_cad.outputs import hashes_of, output_paths, outputs_together
-from wrinkle_cad.phases import PhaseClock
-from wrinkle_cad.summary import summary_of, to_json
 
-from . import settings
+from .job import Job
+from .outcome import JobDone, JobFailed, Progress
+from .outputs import hashes_of, output_paths, outputs_together
+from .phases import PhaseClock
+from .summary import summary_of, to_json
 
 if TYPE_CHECKING:
     from wrinkle_cad.cad.exchange.choose import Chosen
     from wrinkle_cad.cad.exchange.shapes import CadFile
     from wrinkle_cad.wrinkle.strip_report import StripReport
     from wrinkle_cad.wrinkle.triangulated_strip import TriangulatedStrip
-    from wrinkle_cad.writing import Made
+
+    from .writing import Made
 
 _PHASES: Final = ("read", "strip", "surface", "pattern", "judge", "write", "page")
 _NOT_HASHED: Final = ("json", "html")
@@ -78,22 +79,23 @@ def _run(job: Job, clock: PhaseClock) -> JobDone:
 
 
 def _read(job: Job) -> tuple[CadFile, Chosen]:
-    from wrinkle_cad.job_parts import output_kinds, read_chosen
+    from .parts import output_kinds, read_chosen
 
     return read_chosen(job, output_kinds(job))
 
 
 def _make(job: Job, chosen: Chosen, clock: PhaseClock) -> Made:
-    from wrinkle_cad.job_parts import limits_of, piece_settings_of, strip_of
     from wrinkle_cad.wrinkle.cut_pattern import pattern_of_strips
-    from wrinkle_cad.writing import Made
+
+    from .parts import limits_of, piece_settings_of, strip_of
+    from .writing import Made
 
     with clock.phase("strip"):
         limits = limits_of(job)
         piece_settings = piece_settings_of(job, limits)
         upper = None
         if chosen.upper is not None:
-            from wrinkle_cad.wrinkled_upper import wrinkle_upper
+            from .wrinkled_upper import wrinkle_upper
 
             upper = wrinkle_upper(job, chosen)
             strips: tuple[TriangulatedStrip, ...] = (*upper.strips, *upper.bands)
@@ -156,8 +158,8 @@ def findings_on(strip: TriangulatedStrip, report: StripReport) -> Iterator[Findi
 
 
 def _write(job: Job, made: Made, summary: dict[str, Any], clock: PhaseClock) -> tuple[Path, ...]:
-    from wrinkle_cad.job_parts import output_kinds
-    from wrinkle_cad.writing import page_of, write_flat, write_shapes
+    from .parts import output_kinds
+    from .writing import page_of, write_flat, write_shapes
 
     kinds = output_kinds(job)
     with outputs_together(job, kinds) as paths:

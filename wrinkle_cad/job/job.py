@@ -12,9 +12,8 @@ from dataclasses import dataclass, fields
 from pathlib import Path
 from typing import Any, Final
 
+from wrinkle_cad import settings
 from wrinkle_cad.errors import JobError
-
-from . import settings
 
 _PATH_FIELDS: Final = ("input", "output_dir", "material")
 _CHOICES: Final[dict[str, tuple[str, ...]]] = {

@@ -6,11 +6,11 @@ from pathlib import Path
 
 import pytest
 
-from wrinkle_cad.job import Job
-from wrinkle_cad.outcome import JobDone, JobFailed
-from wrinkle_cad.workflow import run_job
+from wrinkle_cad.job.job import Job
+from wrinkle_cad.job.outcome import JobDone, JobFailed
+from wrinkle_cad.job.workflow import run_job
 
-EXAMPLE = Path(__file__).parent.parent / "shoe_examples" / "vamp_strip" / "vamp_strip.step"
+EXAMPLE = Path(__file__).parents[2] / "shoe_examples" / "vamp_strip" / "vamp_strip.step"
 BAD_FILES = (
     "Ad014.stp",
     "Gn002.stp",

@@ -10,9 +10,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from wrinkle_cad.findings import Finding
-from wrinkle_cad.job import Job
-from wrinkle_cad.outputs import SCHEMA, SCHEMA_VERSION
-from wrinkle_cad.versions import installed_versions
+
+from .job import Job
+from .outputs import SCHEMA, SCHEMA_VERSION
+from .versions import installed_versions
 
 if TYPE_CHECKING:
     from wrinkle_cad.cad.exchange.choose import Chosen

@@ -6,13 +6,13 @@ import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, cast
 
+from wrinkle_cad import settings
 from wrinkle_cad.findings import Finding
-from wrinkle_cad.job import Job
-from wrinkle_cad.job_parts import strip_of
 from wrinkle_cad.wrinkle.triangulated_strip import TriangulatedStrip
 from wrinkle_cad.wrinkle.wrinkle_strip import WrinkleStrip
 
-from . import settings
+from .job import Job
+from .parts import strip_of
 
 if TYPE_CHECKING:
     from wrinkle_cad.cad.exchange.choose import Chosen, StripInput

@@ -8,7 +8,8 @@ from pathlib import Path
 from typing import Any
 
 from wrinkle_cad.findings import Finding
-from wrinkle_cad.job import Job
+
+from .job import Job
 
 Progress = Callable[[str, int, int], None]
 """Called with the phase's name, how many of its parts are done and how many there are."""

@@ -6,10 +6,9 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from wrinkle_cad import settings
 from wrinkle_cad.cad.kernel.loading import kernel_importable
 from wrinkle_cad.errors import InputError
-
-from . import settings
 
 if TYPE_CHECKING:
     from wrinkle_cad.cad.exchange.choose import Chosen

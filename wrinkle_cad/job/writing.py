@@ -8,18 +8,19 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from wrinkle_cad.job import Job
-from wrinkle_cad.job_parts import write_pattern
+from wrinkle_cad import settings
 from wrinkle_cad.wrinkle.triangulated_strip import TriangulatedStrip
 
-from . import settings
+from .job import Job
+from .parts import write_pattern
 
 if TYPE_CHECKING:
     from wrinkle_cad.cad.exchange.shapes import Part
     from wrinkle_cad.report.material import Limits
     from wrinkle_cad.report.views import MeshView
     from wrinkle_cad.wrinkle.cut_pattern import Pattern
-    from wrinkle_cad.wrinkled_upper import WrinkledUpper
+
+    from .wrinkled_upper import WrinkledUpper
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -6,8 +6,8 @@ from pathlib import Path
 import pytest
 
 from wrinkle_cad.errors import ExportError, JobError
-from wrinkle_cad.job import Job
-from wrinkle_cad.outputs import (
+from wrinkle_cad.job.job import Job
+from wrinkle_cad.job.outputs import (
     PAGE_MARK,
     SCHEMA,
     check_outputs_are_ours,

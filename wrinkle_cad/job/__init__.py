@@ -1,0 +1,1 @@
+"""One run: settings, from the file read to the outputs written."""
