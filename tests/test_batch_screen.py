@@ -19,10 +19,10 @@ from rich.console import Console
 from tests.batch.conftest import Bench
 from tests.batch.stand_ins import KINDS, PHASES, chattering_job, job_by_content
 from wrinkle_cad import batch_screen
-from wrinkle_cad.batch.conversion import ConversionOptions
-from wrinkle_cad.batch.events import BatchSummary, FileFinished, FilePhase, FileSkipped
-from wrinkle_cad.batch.lock import locked_folder
-from wrinkle_cad.batch.manifest import Record
+from wrinkle_cad.batch.folder.conversion import ConversionOptions
+from wrinkle_cad.batch.folder.events import BatchSummary, FileFinished, FilePhase, FileSkipped
+from wrinkle_cad.batch.folder.lock import locked_folder
+from wrinkle_cad.batch.folder.manifest import Record
 from wrinkle_cad.batch_display import live_display, print_summary
 from wrinkle_cad.cli import main
 

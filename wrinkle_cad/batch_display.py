@@ -19,7 +19,7 @@ from rich.progress import (
 from rich.table import Table
 from rich.text import Text
 
-from wrinkle_cad.batch.events import (
+from wrinkle_cad.batch.folder.events import (
     BatchEvent,
     BatchSummary,
     FileFinished,
@@ -27,8 +27,8 @@ from wrinkle_cad.batch.events import (
     FileSkipped,
     Listener,
 )
-from wrinkle_cad.batch.index_page import PAGE_NAME
-from wrinkle_cad.batch.summary import TABLE_NAME
+from wrinkle_cad.batch.folder.index_page import PAGE_NAME
+from wrinkle_cad.batch.folder.summary import TABLE_NAME
 
 
 @contextmanager

@@ -11,9 +11,9 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import Any, Final, TextIO
 
-from wrinkle_cad.batch.conversion import ConversionOptions, convert
-from wrinkle_cad.batch.crew import Crew
-from wrinkle_cad.batch.events import (
+from wrinkle_cad.batch.executor import make_crew
+from wrinkle_cad.batch.folder.conversion import ConversionOptions, convert
+from wrinkle_cad.batch.folder.events import (
     BatchEvent,
     BatchStarted,
     BatchSummary,
@@ -22,11 +22,11 @@ from wrinkle_cad.batch.events import (
     FileSkipped,
     Listener,
 )
-from wrinkle_cad.batch.executor import make_crew
-from wrinkle_cad.batch.inputs import find_sources
-from wrinkle_cad.batch.plan import PlannedJob, plan_batch
-from wrinkle_cad.batch.rehearsal import DONE_BEFORE, TO_DO, rehearse
-from wrinkle_cad.batch.summary import total_seconds
+from wrinkle_cad.batch.folder.inputs import find_sources
+from wrinkle_cad.batch.folder.plan import PlannedJob, plan_batch
+from wrinkle_cad.batch.folder.rehearsal import DONE_BEFORE, TO_DO, rehearse
+from wrinkle_cad.batch.folder.summary import total_seconds
+from wrinkle_cad.batch.workers.crew import Crew
 from wrinkle_cad.errors import InputError
 from wrinkle_cad.job.job import read_job_toml
 
@@ -140,7 +140,7 @@ def _crew(given: argparse.Namespace) -> Iterator[Crew]:
                 f"--{name} {value:g} - together with --scheduler - the cluster's workers cannot be"
                 " held to it - set it up there, or leave it out"
             )
-    from wrinkle_cad.batch.cluster import cluster_executor
+    from wrinkle_cad.batch.workers.cluster import cluster_executor
 
     with cluster_executor(given.scheduler) as (executor, in_flight):
         yield make_crew(executor=executor, in_flight=in_flight, **limits)

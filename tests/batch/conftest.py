@@ -9,12 +9,12 @@ from pathlib import Path
 import pytest
 
 from tests.batch.stand_ins import job_by_content
-from wrinkle_cad.batch.conversion import ConversionOptions, convert
-from wrinkle_cad.batch.crew import WorkerCrew
-from wrinkle_cad.batch.ending import CrewLimits
-from wrinkle_cad.batch.events import BatchEvent, BatchSummary
-from wrinkle_cad.batch.inputs import find_sources
-from wrinkle_cad.batch.plan import plan_batch
+from wrinkle_cad.batch.folder.conversion import ConversionOptions, convert
+from wrinkle_cad.batch.folder.events import BatchEvent, BatchSummary
+from wrinkle_cad.batch.folder.inputs import find_sources
+from wrinkle_cad.batch.folder.plan import plan_batch
+from wrinkle_cad.batch.workers.crew import WorkerCrew
+from wrinkle_cad.batch.workers.ending import CrewLimits
 
 
 class Bench:

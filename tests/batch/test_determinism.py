@@ -15,12 +15,12 @@ import pytest
 
 from tests.batch.processes import assert_all_end
 from tests.batch.strips import put_strips
-from wrinkle_cad.batch.conversion import ConversionOptions, convert
-from wrinkle_cad.batch.crew import WorkerCrew
-from wrinkle_cad.batch.ending import CrewLimits
-from wrinkle_cad.batch.events import BatchSummary
-from wrinkle_cad.batch.inputs import find_sources
-from wrinkle_cad.batch.plan import plan_batch
+from wrinkle_cad.batch.folder.conversion import ConversionOptions, convert
+from wrinkle_cad.batch.folder.events import BatchSummary
+from wrinkle_cad.batch.folder.inputs import find_sources
+from wrinkle_cad.batch.folder.plan import plan_batch
+from wrinkle_cad.batch.workers.crew import WorkerCrew
+from wrinkle_cad.batch.workers.ending import CrewLimits
 from wrinkle_cad.files.staging import READY_PREFIX
 
 ROOT = Path(__file__).parent.parent.parent

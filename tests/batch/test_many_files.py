@@ -9,12 +9,12 @@ import psutil
 import pytest
 
 from tests.batch.strips import put_strips
-from wrinkle_cad.batch.conversion import convert
-from wrinkle_cad.batch.crew import WorkerCrew
-from wrinkle_cad.batch.ending import CrewLimits
-from wrinkle_cad.batch.events import BatchEvent, FileFinished
-from wrinkle_cad.batch.inputs import find_sources
-from wrinkle_cad.batch.plan import plan_batch
+from wrinkle_cad.batch.folder.conversion import convert
+from wrinkle_cad.batch.folder.events import BatchEvent, FileFinished
+from wrinkle_cad.batch.folder.inputs import find_sources
+from wrinkle_cad.batch.folder.plan import plan_batch
+from wrinkle_cad.batch.workers.crew import WorkerCrew
+from wrinkle_cad.batch.workers.ending import CrewLimits
 
 FILES = 300
 BAD = (b"", b"not a step file", b"ISO-10303-21;\nHEADER;\n")

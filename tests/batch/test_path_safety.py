@@ -11,11 +11,11 @@ import pytest
 from tests.batch.conftest import Bench
 from tests.batch.stand_ins import KINDS
 from tests.batch.strips import EXAMPLE
-from wrinkle_cad.batch.conversion import convert
-from wrinkle_cad.batch.crew import WorkerCrew
-from wrinkle_cad.batch.ending import CrewLimits
-from wrinkle_cad.batch.inputs import find_sources
-from wrinkle_cad.batch.plan import plan_batch
+from wrinkle_cad.batch.folder.conversion import convert
+from wrinkle_cad.batch.folder.inputs import find_sources
+from wrinkle_cad.batch.folder.plan import plan_batch
+from wrinkle_cad.batch.workers.crew import WorkerCrew
+from wrinkle_cad.batch.workers.ending import CrewLimits
 
 HOSTILE_LABELS = (
     "../../x",

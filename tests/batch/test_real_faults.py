@@ -5,8 +5,8 @@ from __future__ import annotations
 from tests.batch.conftest import Bench
 from tests.batch.real_faults import faulty_job
 from tests.batch.strips import EXAMPLE
-from wrinkle_cad.batch.ending import CrewLimits
-from wrinkle_cad.batch.events import FileFinished
+from wrinkle_cad.batch.folder.events import FileFinished
+from wrinkle_cad.batch.workers.ending import CrewLimits
 from wrinkle_cad.job.workflow import _PHASES as PHASES
 
 ROOMS = (0, 1000, 15_000, 100_000, 300_000)

@@ -10,12 +10,12 @@ import pytest
 from pytest_benchmark.fixture import BenchmarkFixture
 
 from tests.batch.strips import put_strips
-from wrinkle_cad.batch.conversion import convert
-from wrinkle_cad.batch.crew import WorkerCrew
-from wrinkle_cad.batch.ending import CrewLimits
-from wrinkle_cad.batch.events import BatchEvent, FileFinished, Listener
-from wrinkle_cad.batch.inputs import find_sources
-from wrinkle_cad.batch.plan import plan_batch
+from wrinkle_cad.batch.folder.conversion import convert
+from wrinkle_cad.batch.folder.events import BatchEvent, FileFinished, Listener
+from wrinkle_cad.batch.folder.inputs import find_sources
+from wrinkle_cad.batch.folder.plan import plan_batch
+from wrinkle_cad.batch.workers.crew import WorkerCrew
+from wrinkle_cad.batch.workers.ending import CrewLimits
 from wrinkle_cad.job.job import Job
 from wrinkle_cad.job.outcome import JobDone
 from wrinkle_cad.job.workflow import run_job

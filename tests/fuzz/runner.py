@@ -22,13 +22,13 @@ from pathlib import Path
 import psutil
 
 from tests.fuzz.mutations import mutate
-from wrinkle_cad.batch.conversion import convert
-from wrinkle_cad.batch.crew import WorkerCrew
-from wrinkle_cad.batch.ending import CrewLimits
-from wrinkle_cad.batch.events import BatchEvent, FileFinished
-from wrinkle_cad.batch.inputs import CAD_SUFFIXES, find_sources
-from wrinkle_cad.batch.manifest import Record
-from wrinkle_cad.batch.plan import plan_batch
+from wrinkle_cad.batch.folder.conversion import convert
+from wrinkle_cad.batch.folder.events import BatchEvent, FileFinished
+from wrinkle_cad.batch.folder.inputs import CAD_SUFFIXES, find_sources
+from wrinkle_cad.batch.folder.manifest import Record
+from wrinkle_cad.batch.folder.plan import plan_batch
+from wrinkle_cad.batch.workers.crew import WorkerCrew
+from wrinkle_cad.batch.workers.ending import CrewLimits
 from wrinkle_cad.files.staging import leftovers
 
 ROOT = Path(__file__).parent.parent.parent

@@ -17,7 +17,7 @@ from tests.fuzz.runner import (
     run,
     weighted,
 )
-from wrinkle_cad.batch.manifest import Record
+from wrinkle_cad.batch.folder.manifest import Record
 
 RECORD = Record(key="a", input="a", input_sha256="", settings_sha256="", outcome="failed")
 

@@ -11,17 +11,16 @@ from pathlib import Path, PurePosixPath
 from typing import Final
 
 from wrinkle_cad import settings
+from wrinkle_cad.batch.folder.delivery import deliver
+from wrinkle_cad.batch.workers.crew import Crew, Event, Finished, WorkerCrew
+from wrinkle_cad.batch.workers.ending import CrewLimits
+from wrinkle_cad.batch.workers.executor_crew import ExecutorCrew
+from wrinkle_cad.batch.workers.task import JobFunction, Task
 from wrinkle_cad.errors import InputError
 from wrinkle_cad.files.names import collision_key
 from wrinkle_cad.files.staging import discard_staging, open_staging
 from wrinkle_cad.job.job import Job
 from wrinkle_cad.job.outcome import JobDone, JobFailed
-
-from .crew import Crew, Event, Finished, WorkerCrew
-from .delivery import deliver
-from .ending import CrewLimits
-from .executor_crew import ExecutorCrew
-from .task import JobFunction, Task
 
 
 class _End:

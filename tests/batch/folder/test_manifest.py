@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from wrinkle_cad.batch.manifest import (
+from wrinkle_cad.batch.folder.manifest import (
     Manifest,
     OutputFile,
     Record,

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from wrinkle_cad.batch.lock import LOCK_NAME, locked_folder
+from wrinkle_cad.batch.folder.lock import LOCK_NAME, locked_folder
 from wrinkle_cad.errors import InputError
 
 HOLD = """

@@ -8,6 +8,9 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from wrinkle_cad import settings
+from wrinkle_cad.batch.executor import run_tasks
+from wrinkle_cad.batch.workers.crew import Crew, Finished, Phase
+from wrinkle_cad.batch.workers.task import JobFunction, Task, TaskResult
 from wrinkle_cad.errors import ExportError
 from wrinkle_cad.files.names import printable
 from wrinkle_cad.files.staging import discard_staging, leftovers, move_into_place, open_staging
@@ -15,11 +18,9 @@ from wrinkle_cad.job.job import Job
 from wrinkle_cad.job.outcome import JobDone, JobFailed
 from wrinkle_cad.job.versions import installed_versions
 
-from .crew import Crew, Finished, Phase
 from .delivery import deliver, failed_record
 from .disk_space import check_disk_space
 from .events import BatchStarted, BatchSummary, FileFinished, FilePhase, FileSkipped, Listener
-from .executor import run_tasks
 from .fingerprint import hash_file, hash_settings
 from .index_page import write_index_page
 from .journal import Journal
@@ -27,7 +28,6 @@ from .lock import locked_folder
 from .manifest import Manifest, Record, record_from_line
 from .plan import PlannedJob
 from .summary import write_summary_table
-from .task import JobFunction, Task, TaskResult
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

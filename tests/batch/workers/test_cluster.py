@@ -11,12 +11,12 @@ from distributed import LocalCluster
 
 from tests.batch.conftest import Bench
 from tests.batch.stand_ins import KINDS, job_by_content
-from wrinkle_cad.batch.cluster import cluster_executor
-from wrinkle_cad.batch.conversion import ConversionOptions, convert
-from wrinkle_cad.batch.events import BatchSummary, FileFinished
 from wrinkle_cad.batch.executor import make_crew
-from wrinkle_cad.batch.inputs import find_sources
-from wrinkle_cad.batch.plan import plan_batch
+from wrinkle_cad.batch.folder.conversion import ConversionOptions, convert
+from wrinkle_cad.batch.folder.events import BatchSummary, FileFinished
+from wrinkle_cad.batch.folder.inputs import find_sources
+from wrinkle_cad.batch.folder.plan import plan_batch
+from wrinkle_cad.batch.workers.cluster import cluster_executor
 from wrinkle_cad.errors import InputError
 
 
@@ -86,7 +86,7 @@ def test_a_worker_of_the_cluster_that_is_killed_costs_the_file_that_it_had(
 def test_a_scheduler_that_does_not_answer_is_told_in_one_line(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    monkeypatch.setattr("wrinkle_cad.batch.cluster._CONNECT_S", 1)
+    monkeypatch.setattr("wrinkle_cad.batch.workers.cluster._CONNECT_S", 1)
     with (
         pytest.raises(InputError, match=r"--scheduler tcp://127.0.0.1:9"),
         cluster_executor("tcp://127.0.0.1:9"),

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from wrinkle_cad.batch.inputs import find_sources, split_name
+from wrinkle_cad.batch.folder.inputs import find_sources, split_name
 from wrinkle_cad.errors import InputError
 
 

@@ -6,8 +6,8 @@ from pathlib import Path
 
 import pytest
 
-from wrinkle_cad.batch.inputs import find_sources
-from wrinkle_cad.batch.plan import PlannedJob, plan_batch
+from wrinkle_cad.batch.folder.inputs import find_sources
+from wrinkle_cad.batch.folder.plan import PlannedJob, plan_batch
 from wrinkle_cad.errors import JobError
 
 

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from wrinkle_cad.batch.disk_space import check_disk_space
+from wrinkle_cad.batch.folder.disk_space import check_disk_space
 from wrinkle_cad.errors import ExportError
 
 

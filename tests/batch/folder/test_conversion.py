@@ -13,10 +13,10 @@ import pytest
 
 from tests.batch.conftest import Bench
 from tests.batch.stand_ins import KINDS, limits_missed_job
-from wrinkle_cad.batch import delivery
-from wrinkle_cad.batch.events import BatchSummary, FileFinished, FileSkipped
-from wrinkle_cad.batch.lock import locked_folder
-from wrinkle_cad.batch.manifest import Manifest
+from wrinkle_cad.batch.folder import delivery
+from wrinkle_cad.batch.folder.events import BatchSummary, FileFinished, FileSkipped
+from wrinkle_cad.batch.folder.lock import locked_folder
+from wrinkle_cad.batch.folder.manifest import Manifest
 from wrinkle_cad.errors import ExportError, InputError
 from wrinkle_cad.files import staging
 
@@ -51,7 +51,7 @@ def test_other_versions_make_everything_again(
     bench.put(a="1")
     bench.run()
     versions = {**conversion_versions(), "shapely": "99"}
-    monkeypatch.setattr("wrinkle_cad.batch.conversion.installed_versions", lambda: versions)
+    monkeypatch.setattr("wrinkle_cad.batch.folder.conversion.installed_versions", lambda: versions)
     assert counts(bench.run()) == (1, 0, 0)
 
 
@@ -160,7 +160,7 @@ def test_a_folder_in_use_is_refused(bench: Bench) -> None:
 
 
 def test_an_unreadable_input_costs_itself(bench: Bench, monkeypatch: pytest.MonkeyPatch) -> None:
-    from wrinkle_cad.batch import conversion
+    from wrinkle_cad.batch.folder import conversion
 
     real = conversion.hash_file
 
@@ -191,7 +191,7 @@ def test_a_disk_that_fills_up_stops_the_batch_which_goes_on_later(
     def fill(path: object) -> object:
         return usage._replace(free=next(looks, 0))
 
-    monkeypatch.setattr("wrinkle_cad.batch.disk_space.shutil.disk_usage", fill)
+    monkeypatch.setattr("wrinkle_cad.batch.folder.disk_space.shutil.disk_usage", fill)
     summary = bench.run()
     assert (summary.done, summary.left) == (2, 2)
     assert "0 MiB free" in summary.stopped_by

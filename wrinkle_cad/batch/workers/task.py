@@ -8,13 +8,12 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Final
 
+from wrinkle_cad.batch.folder.fingerprint import hash_file
+from wrinkle_cad.batch.folder.manifest import OutputFile
 from wrinkle_cad.errors import JobError
 from wrinkle_cad.job.job import Job
 from wrinkle_cad.job.outcome import JobDone, JobFailed, Progress
 from wrinkle_cad.job.versions import installed_versions
-
-from .fingerprint import hash_file
-from .manifest import OutputFile
 
 JobFunction = Callable[..., JobDone | JobFailed]
 """Called as ``job_function(job, progress=...)``; found by its name in a worker."""

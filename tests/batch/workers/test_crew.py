@@ -13,11 +13,11 @@ import pytest
 
 from tests.batch.conftest import Bench
 from tests.batch.stand_ins import KINDS, PHASES, chattering_job, worker_id_job
-from wrinkle_cad.batch.crew import WorkerCrew
-from wrinkle_cad.batch.ending import CrewLimits
-from wrinkle_cad.batch.events import FileFinished, FilePhase
-from wrinkle_cad.batch.manifest import Record
-from wrinkle_cad.batch.task import Task
+from wrinkle_cad.batch.folder.events import FileFinished, FilePhase
+from wrinkle_cad.batch.folder.manifest import Record
+from wrinkle_cad.batch.workers.crew import WorkerCrew
+from wrinkle_cad.batch.workers.ending import CrewLimits
+from wrinkle_cad.batch.workers.task import Task
 from wrinkle_cad.errors import InputError
 from wrinkle_cad.job.job import Job
 

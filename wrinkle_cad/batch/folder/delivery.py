@@ -9,6 +9,7 @@ from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any, Final
 
+from wrinkle_cad.batch.workers.task import TaskResult
 from wrinkle_cad.errors import WrinkleError
 from wrinkle_cad.files.names import printable
 from wrinkle_cad.files.staging import commit_staging, discard_staging, flush_files, move_into_place
@@ -17,7 +18,6 @@ from wrinkle_cad.job.outcome import JobDone, JobFailed
 from wrinkle_cad.job.outputs import check_outputs_are_ours
 
 from .manifest import OutputFile, Record, record_to_line
-from .task import TaskResult
 
 _SUMS: Final = ("interior_bridges", "invalid_bridges", "inflection_bridges")
 _SUMMED_MEASURES: Final = ("area_3d_mm2", "area_pattern_mm2")

@@ -1,0 +1,1 @@
+"""The folder a batch fills: inputs, plan, outputs, manifest, summary."""
