@@ -25,13 +25,8 @@ LAYER = {
     "report": 4,
     "wrinkle": 6,
     "job": 7,
-    "job_arguments": 8,
     "batch": 12,
     "doctor": 12,
-    "screen": 12,
-    "batch_arguments": 13,
-    "batch_display": 13,
-    "batch_screen": 14,
     "cli": 15,
     "__main__": 16,
 }

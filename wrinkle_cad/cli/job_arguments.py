@@ -8,10 +8,9 @@ from dataclasses import fields
 from pathlib import Path
 from typing import Any
 
+from wrinkle_cad import settings
 from wrinkle_cad.errors import InputError
 from wrinkle_cad.job.job import Job
-
-from . import settings
 
 
 def add_job_arguments(parser: argparse.ArgumentParser) -> None:

@@ -18,15 +18,15 @@ from rich.console import Console
 
 from tests.batch.conftest import Bench
 from tests.batch.stand_ins import KINDS, PHASES, chattering_job, job_by_content
-from wrinkle_cad import batch_screen
 from wrinkle_cad.batch.folder.conversion import ConversionOptions
 from wrinkle_cad.batch.folder.events import BatchSummary, FileFinished, FilePhase, FileSkipped
 from wrinkle_cad.batch.folder.lock import locked_folder
 from wrinkle_cad.batch.folder.manifest import Record
-from wrinkle_cad.batch_display import live_display, print_summary
-from wrinkle_cad.cli import main
+from wrinkle_cad.cli import batch_screen
+from wrinkle_cad.cli.batch_display import live_display, print_summary
+from wrinkle_cad.cli.main import main
 
-ROOT = Path(__file__).parent.parent
+ROOT = Path(__file__).parents[2]
 
 
 @pytest.fixture

@@ -16,9 +16,10 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
-from wrinkle_cad.batch_arguments import add_batch_arguments
 from wrinkle_cad.errors import WrinkleError
-from wrinkle_cad.job_arguments import add_job_arguments, job_keywords
+
+from .batch_arguments import add_batch_arguments
+from .job_arguments import add_job_arguments, job_keywords
 
 if TYPE_CHECKING:
     from wrinkle_cad.job.outcome import JobDone
@@ -150,7 +151,8 @@ def _run(given: argparse.Namespace) -> int:
     from wrinkle_cad.job.job import make_job
     from wrinkle_cad.job.outcome import JobFailed
     from wrinkle_cad.job.workflow import run_job
-    from wrinkle_cad.screen import progress_on_screen
+
+    from .screen import progress_on_screen
 
     job = make_job(given.input, job_keywords(given, os.environ), given.job)
     with progress_on_screen(is_wanted=not given.quiet) as progress:
@@ -171,7 +173,7 @@ def job_misses_limits(outcome: JobDone) -> bool:
 
 
 def _print_done(outcome: JobDone) -> None:
-    from wrinkle_cad.screen import one_line
+    from .screen import one_line
 
     for strip in outcome.summary["strips"]:
         print(
@@ -190,14 +192,15 @@ def _print_done(outcome: JobDone) -> None:
 
 
 def _batch(given: argparse.Namespace) -> int:
-    from wrinkle_cad.batch_screen import run_batch_command
+    from .batch_screen import run_batch_command
 
     return run_batch_command(given, job_keywords(given, os.environ))
 
 
 def _inspect(given: argparse.Namespace) -> int:
     from wrinkle_cad.job.inspection import inspect_file
-    from wrinkle_cad.screen import print_inspection
+
+    from .screen import print_inspection
 
     inspection = inspect_file(given.input, unit=given.unit, p=given.p, q=given.q, upper=given.upper)
     if given.json:
@@ -210,7 +213,8 @@ def _inspect(given: argparse.Namespace) -> int:
 def _compare(given: argparse.Namespace) -> int:
     from wrinkle_cad.job.comparison import compare_job
     from wrinkle_cad.job.job import make_job
-    from wrinkle_cad.screen import print_comparison
+
+    from .screen import print_comparison
 
     job = make_job(given.input, job_keywords(given, os.environ))
     summary, outputs = compare_job(job)
@@ -222,7 +226,8 @@ def _compare(given: argparse.Namespace) -> int:
 
 def _check(given: argparse.Namespace) -> int:
     from wrinkle_cad.pattern.check.judging import judge_dxf
-    from wrinkle_cad.screen import one_line
+
+    from .screen import one_line
 
     report = judge_dxf(given.input, cut_layers=tuple(given.cut_layer))
     if given.json:

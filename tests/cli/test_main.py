@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-EXAMPLE = Path(__file__).parent.parent / "shoe_examples" / "vamp_strip" / "vamp_strip.step"
+EXAMPLE = Path(__file__).parents[2] / "shoe_examples" / "vamp_strip" / "vamp_strip.step"
 
 
 def wrinkle_cad(*arguments: str | Path, **more: str) -> subprocess.CompletedProcess[str]:

@@ -161,7 +161,7 @@ def _listener(given: argparse.Namespace, total: int) -> Iterator[Listener]:
     elif given.quiet:
         yield _tell_failures
     elif sys.stderr.isatty():
-        from wrinkle_cad.batch_display import live_display
+        from .batch_display import live_display
 
         with live_display(total) as listener:
             yield listener
@@ -215,7 +215,7 @@ def _show_summary(given: argparse.Namespace, summary: BatchSummary) -> None:
         line = {"event": "ended", **asdict(summary), "folder": str(summary.folder)}
         _say(sys.stdout, json.dumps(line))
     elif not given.quiet:
-        from wrinkle_cad.batch_display import print_summary
+        from .batch_display import print_summary
 
         print_summary(summary)
     if summary.stopped_by:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
-from . import settings
+from wrinkle_cad import settings
 
 
 def add_batch_arguments(parser: argparse.ArgumentParser) -> None:

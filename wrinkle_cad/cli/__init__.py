@@ -1,0 +1,1 @@
+"""The command line: flags, terminal, exit codes; nothing else."""
