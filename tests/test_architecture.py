@@ -8,8 +8,7 @@ import sys
 from collections.abc import Iterator
 from graphlib import TopologicalSorter
 from pathlib import Path
-
-import pytest
+from statistics import median
 
 PACKAGE = Path(__file__).parent.parent / "wrinkle_cad"
 MODULES = sorted(PACKAGE.rglob("*.py"))
@@ -17,21 +16,35 @@ MODULES = sorted(PACKAGE.rglob("*.py"))
 LAYER = {
     "errors": 0,
     "settings": 0,
-    "findings": 0,
-    "files": 0.5,
-    "strip": 1,
-    "pattern": 2,
-    "cad": 3,
-    "report": 4,
-    "wrinkle": 6,
+    "files": 1,
+    "strip": 2,
+    "pattern": 3,
+    "cad": 4,
+    "wrinkle": 5,
+    "report": 6,
     "job": 7,
-    "batch": 12,
-    "doctor": 12,
-    "cli": 15,
-    "__main__": 16,
+    "batch": 8,
+    "doctor": 8,
+    "cli": 9,
+    "__main__": 10,
 }
+"""A module imports only from lower layers and from its own folder."""
+
+ROOT_MODULES = {"__init__", "__main__", "errors", "settings", "doctor"}
+UPWARD_WHEN_CALLED = {("wrinkle", "report")}
+"""A strip offers the figures and the page of the layer above, and imports them when asked."""
+
 CAD_PACKAGES = {"OCP", "build123d", "cadquery"}
-STRIP_PACKAGES = {"numpy", "numba", "wrinkle_cad"}
+PACKAGES_OF = {
+    "strip": {"numpy", "numba", "scipy", "shapely"},
+    "pattern": {"numpy", "numba", "scipy", "shapely", "ezdxf"},
+}
+"""What two folders that are of use without CAD may import, beside the standard library."""
+IMPORTED_WHEN_CALLED = {"pattern": {"matplotlib"}}
+"""A PDF is drawn with matplotlib; everything else of the pattern does without."""
+
+LONGEST_MODULE = 400
+TYPICAL_MODULE = 150
 
 
 def module_name(path: Path) -> str:
@@ -39,71 +52,112 @@ def module_name(path: Path) -> str:
     return ".".join(parts[:-1] if parts[-1] == "__init__" else parts)
 
 
-def imports_of(path: Path) -> Iterator[tuple[int, str]]:
-    """Every imported module, relative ones made absolute, wherever the import stands."""
+def folder_of(module: str) -> str:
+    return module.split(".")[1]
+
+
+def imports_of(path: Path) -> Iterator[tuple[int, str, bool]]:
+    """Line, absolute name, and whether it runs only when a function is called or types checked."""
     package = module_name(path).split(".")
     if path.name != "__init__.py":
         package = package[:-1]
-    for node in ast.walk(ast.parse(path.read_text())):
+    tree = ast.parse(path.read_text(encoding="utf-8"))
+    late = {
+        id(inner)
+        for outer in ast.walk(tree)
+        if isinstance(outer, ast.FunctionDef)
+        or (isinstance(outer, ast.If) and ast.unparse(outer.test) == "TYPE_CHECKING")
+        for inner in ast.walk(outer)
+    }
+    for node in ast.walk(tree):
         if isinstance(node, ast.Import):
-            yield from ((node.lineno, alias.name) for alias in node.names)
+            yield from ((node.lineno, alias.name, id(node) in late) for alias in node.names)
         elif isinstance(node, ast.ImportFrom):
             base = package[: len(package) - node.level + 1] if node.level else []
             stem = ".".join([*base, *([node.module] if node.module else [])])
             for alias in node.names:
                 candidate = PACKAGE.parent.joinpath(*stem.split("."), alias.name)
                 is_module = candidate.with_suffix(".py").is_file() or candidate.is_dir()
-                yield node.lineno, f"{stem}.{alias.name}" if is_module else stem
+                name = f"{stem}.{alias.name}" if is_module else stem
+                yield node.lineno, name, id(node) in late
 
 
-def layer_of(module: str) -> int:
-    return LAYER[module.split(".")[1]]
+def own_imports(path: Path) -> Iterator[tuple[int, str, bool]]:
+    return (found for found in imports_of(path) if found[1].split(".")[0] == "wrinkle_cad")
 
 
-@pytest.mark.parametrize("path", MODULES, ids=module_name)
-def test_imports_point_down(path: Path) -> None:
-    if path == PACKAGE / "__init__.py":
-        return
-    here = module_name(path)
-    for line, module in imports_of(path):
-        if module.split(".")[0] != "wrinkle_cad":
+def test_beside_the_folders_stand_five_modules() -> None:
+    assert {path.stem for path in PACKAGE.glob("*.py")} == ROOT_MODULES
+    folders = {path.name for path in PACKAGE.iterdir() if (path / "__init__.py").is_file()}
+    assert folders | ROOT_MODULES == {*LAYER, "__init__"}
+
+
+def test_imports_point_down() -> None:
+    faults = []
+    for path in MODULES:
+        if path == PACKAGE / "__init__.py":
             continue
-        assert module != "wrinkle_cad", f"{path}:{line} imports the package root"
-        same_folder = module.split(".")[1] == here.split(".")[1]
-        assert same_folder or layer_of(module) < layer_of(here), f"{path}:{line} imports {module}"
-
-
-@pytest.mark.parametrize("path", MODULES, ids=module_name)
-def test_only_the_cad_folder_imports_a_cad_package(path: Path) -> None:
-    if path.is_relative_to(PACKAGE / "cad"):
-        return
-    for line, module in imports_of(path):
-        assert module.split(".")[0] not in CAD_PACKAGES, f"{path}:{line} imports {module}"
-
-
-@pytest.mark.parametrize("path", sorted((PACKAGE / "strip").rglob("*.py")), ids=module_name)
-def test_the_strip_folder_knows_arrays_only(path: Path) -> None:
-    for line, module in imports_of(path):
-        root = module.split(".")[0]
-        assert root in STRIP_PACKAGES or root in sys.stdlib_module_names, f"{path}:{line} {module}"
+        here = folder_of(module_name(path))
+        for line, module, is_late in own_imports(path):
+            if module == "wrinkle_cad":
+                faults.append(f"{path}:{line} imports the package root")
+                continue
+            there = folder_of(module)
+            is_down = there == here or LAYER[there] < LAYER[here]
+            if not is_down and not (is_late and (here, there) in UPWARD_WHEN_CALLED):
+                faults.append(f"{path}:{line} imports {module}")
+    assert not faults, "\n".join(faults)
 
 
 def test_no_module_imports_itself_through_others() -> None:
     graph = {
         module_name(path): {
             module
-            for _, module in imports_of(path)
-            if module.startswith("wrinkle_cad.") and module != module_name(path)
+            for _, module, is_late in own_imports(path)
+            if not (
+                is_late and (folder_of(module_name(path)), folder_of(module)) in UPWARD_WHEN_CALLED
+            )
+            and module != module_name(path)
         }
         for path in MODULES
+        if path != PACKAGE / "__init__.py"
     }
-    order = list(TopologicalSorter(graph).static_order())
-    assert len(order) >= len(MODULES)
+    assert len(list(TopologicalSorter(graph).static_order())) >= len(graph)
+
+
+def test_only_the_cad_folder_imports_a_cad_package() -> None:
+    faults = [
+        f"{path}:{line} imports {module}"
+        for path in MODULES
+        if not path.is_relative_to(PACKAGE / "cad") and path != PACKAGE / "__init__.py"
+        for line, module, _ in imports_of(path)
+        if module.split(".")[0] in CAD_PACKAGES
+    ]
+    assert not faults, "\n".join(faults)
+
+
+def test_strip_and_pattern_are_of_use_without_cad_and_terminal() -> None:
+    faults = [
+        f"{path}:{line} imports {module}"
+        for folder, packages in PACKAGES_OF.items()
+        for path in sorted((PACKAGE / folder).rglob("*.py"))
+        for line, module, is_late in imports_of(path)
+        if module.split(".")[0] not in packages | {"wrinkle_cad"} | sys.stdlib_module_names
+        and not (is_late and module.split(".")[0] in IMPORTED_WHEN_CALLED.get(folder, ()))
+    ]
+    assert not faults, "\n".join(faults)
+
+
+def test_modules_have_a_size_that_one_purpose_needs() -> None:
+    lines = {path: len(path.read_text(encoding="utf-8").splitlines()) for path in MODULES}
+    assert [path for path, count in lines.items() if count > LONGEST_MODULE] == []
+    sizes = [count for path, count in lines.items() if path.name != "__init__.py"]
+    assert median(sizes) <= TYPICAL_MODULE
 
 
 def test_importing_the_package_loads_no_cad_kernel() -> None:
     code = (
-        "import sys, wrinkle_cad, wrinkle_cad.cli\n"
+        "import sys, wrinkle_cad, wrinkle_cad.cli.main\n"
         "heavy = {'OCP', 'build123d', 'numba', 'ezdxf', 'shapely', 'matplotlib'}\n"
         "heavy &= set(sys.modules)\n"
         "assert not heavy, heavy"

@@ -29,7 +29,7 @@ _MODULE_OF: Final = {
     "JobFailed": "job.outcome",
     "run_job": "job.workflow",
     "run_batch": "batch.executor",
-    "Finding": "findings",
+    "Finding": "errors",
     "WrinkleError": "errors",
     "InputError": "errors",
     "JobError": "errors",

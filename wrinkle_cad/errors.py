@@ -1,11 +1,27 @@
-"""Every error class of the package.
+"""Every error class of the package, and ``Finding`` for what does not stop a job.
 
 A message is one line: what - what was found, with its unit - the limit - what to do.
 """
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from pathlib import Path
+from typing import Literal
+
+Severity = Literal["info", "warning", "error"]
+
+
+@dataclass(frozen=True, slots=True)
+class Finding:
+    """What a step noticed without stopping: it goes into the result, not to the screen."""
+
+    code: str
+    """Short kebab-case key, stable between versions ("rails-turned-alike")."""
+    severity: Severity
+    """``info``, ``warning`` or ``error``."""
+    message: str
+    """One line: what - what was found, with its unit - the limit - what to do."""
 
 
 class WrinkleError(Exception):

@@ -11,13 +11,13 @@ from numpy.typing import NDArray
 
 from wrinkle_cad.pattern.piece.making import make_pieces
 from wrinkle_cad.pattern.piece.options import NotchRule, PieceSettings
-from wrinkle_cad.report.gap_list import gap_entry
-from wrinkle_cad.report.material import Limits, smallest_bend_radius
+from wrinkle_cad.report.material import Limits
 from wrinkle_cad.report.verdict import judge
 from wrinkle_cad.report.views import MeshView, StripView
+from wrinkle_cad.strip.bend_radius import smallest_bend_radius
 from wrinkle_cad.strip.convexity import validity_matrix
 from wrinkle_cad.strip.flat.unrolling import unroll
-from wrinkle_cad.strip.gaps import find_gaps
+from wrinkle_cad.strip.gaps import find_gaps, gap_entry
 from wrinkle_cad.strip.triangulation import triangulate
 
 Rail = NDArray[np.float64]

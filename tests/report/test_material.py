@@ -10,7 +10,8 @@ import pytest
 
 from tests.report.strips import cylinder_rails, planar_rails
 from wrinkle_cad.errors import InputError
-from wrinkle_cad.report.material import Limits, read_material, smallest_bend_radius
+from wrinkle_cad.report.material import Limits, read_material
+from wrinkle_cad.strip.bend_radius import smallest_bend_radius
 from wrinkle_cad.strip.triangulation import triangulate
 
 LEATHER = """

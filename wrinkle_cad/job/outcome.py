@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from wrinkle_cad.findings import Finding
+from wrinkle_cad.errors import Finding
 
 from .job import Job
 

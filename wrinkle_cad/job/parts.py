@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, cast
 
 from wrinkle_cad import settings
 from wrinkle_cad.cad.kernel.loading import kernel_importable
-from wrinkle_cad.findings import Finding
+from wrinkle_cad.errors import Finding
 
 from .job import Job
 from .outputs import check_outputs_are_ours

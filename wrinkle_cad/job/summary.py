@@ -9,7 +9,7 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from wrinkle_cad.findings import Finding
+from wrinkle_cad.errors import Finding
 
 from .job import Job
 from .outputs import SCHEMA, SCHEMA_VERSION

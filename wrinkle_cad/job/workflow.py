@@ -8,8 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
 from wrinkle_cad import settings
-from wrinkle_cad.errors import JobError, WrinkleError
-from wrinkle_cad.findings import Finding
+from wrinkle_cad.errors import Finding, JobError, WrinkleError
 
 from .job import Job
 from .outcome import JobDone, JobFailed, Progress

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, cast
 
 from wrinkle_cad import settings
-from wrinkle_cad.findings import Finding
+from wrinkle_cad.errors import Finding
 from wrinkle_cad.wrinkle.triangulated_strip import TriangulatedStrip
 from wrinkle_cad.wrinkle.wrinkle_strip import WrinkleStrip
 

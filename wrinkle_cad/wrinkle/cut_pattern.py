@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Protocol
 
 from wrinkle_cad import settings
-from wrinkle_cad.findings import Finding
+from wrinkle_cad.errors import Finding
 from wrinkle_cad.pattern.piece.making import make_pieces, rail_corners
 from wrinkle_cad.pattern.piece.options import NotchRule, PieceSettings
 from wrinkle_cad.pattern.piece.piece import PatternPiece

@@ -9,10 +9,9 @@ from typing import Any, Literal
 
 import numpy as np
 
-from wrinkle_cad.report.gap_list import gap_entry
-from wrinkle_cad.report.material import smallest_bend_radius
+from wrinkle_cad.strip.bend_radius import smallest_bend_radius
 from wrinkle_cad.strip.flat.unrolling import Unrolling
-from wrinkle_cad.strip.gaps import Gap, covered_lengths
+from wrinkle_cad.strip.gaps import Gap, covered_lengths, gap_entry
 from wrinkle_cad.strip.triangulation import Triangulation
 
 Role = Literal["strip", "band"]

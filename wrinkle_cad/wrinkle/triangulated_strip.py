@@ -12,8 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from wrinkle_cad import settings
-from wrinkle_cad.errors import CadError, InputError
-from wrinkle_cad.findings import Finding
+from wrinkle_cad.errors import CadError, Finding, InputError
 from wrinkle_cad.strip.convexity import validity_matrix
 from wrinkle_cad.strip.flat.unrolling import Unrolling, unroll, unroll_cones
 from wrinkle_cad.strip.gaps import find_gaps

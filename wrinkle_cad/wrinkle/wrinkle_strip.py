@@ -11,7 +11,7 @@ from wrinkle_cad.cad.rail.directrix import (
     orient_alike,
     sample_directrix,
 )
-from wrinkle_cad.findings import Finding
+from wrinkle_cad.errors import Finding
 from wrinkle_cad.strip.triangulation import triangulate
 
 from .triangulated_strip import TriangulatedStrip, check_surface

@@ -8,7 +8,7 @@ import numpy as np
 import shapely
 
 from wrinkle_cad import settings
-from wrinkle_cad.findings import Finding
+from wrinkle_cad.errors import Finding
 from wrinkle_cad.pattern.piece.piece import Floats
 
 from .reading import FileLine

@@ -16,7 +16,7 @@ from typing import Final
 import numpy as np
 
 from wrinkle_cad import settings
-from wrinkle_cad.findings import Finding, Severity
+from wrinkle_cad.errors import Finding, Severity
 
 from .contours import judge_contours
 from .pieces import judge_pieces

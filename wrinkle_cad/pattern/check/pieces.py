@@ -8,7 +8,7 @@ from typing import Final
 
 import numpy as np
 
-from wrinkle_cad.findings import Finding
+from wrinkle_cad.errors import Finding
 from wrinkle_cad.pattern.formats.aama import CURVE_POINTS, TURN_POINTS, VALIDATION
 
 from .reading import ENTITIES, DxfContent, FileLine, FileMark

@@ -20,7 +20,7 @@ from ezdxf.document import Drawing as DxfDocument
 from ezdxf.layouts import BlockLayout
 
 from wrinkle_cad import settings
-from wrinkle_cad.findings import Finding
+from wrinkle_cad.errors import Finding
 from wrinkle_cad.pattern.piece.options import NotchKind
 from wrinkle_cad.pattern.piece.outline import closed_turns
 from wrinkle_cad.pattern.piece.piece import Bools, Floats, PatternPiece, frozen, make_outline

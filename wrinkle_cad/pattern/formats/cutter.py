@@ -14,7 +14,7 @@ from ezdxf.document import Drawing as DxfDocument
 from ezdxf.layouts import Modelspace
 
 from wrinkle_cad import settings
-from wrinkle_cad.findings import Finding
+from wrinkle_cad.errors import Finding
 from wrinkle_cad.pattern.piece.piece import Floats, PatternPiece
 
 from .contours import Curves, closed_spline, with_arcs

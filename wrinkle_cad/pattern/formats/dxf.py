@@ -20,9 +20,8 @@ from ezdxf.addons import gerber_D6673, r12export
 from ezdxf.document import Drawing
 
 from wrinkle_cad import settings
-from wrinkle_cad.errors import ExportError, InputError
+from wrinkle_cad.errors import ExportError, Finding, InputError
 from wrinkle_cad.files.atomic import write_atomically
-from wrinkle_cad.findings import Finding
 from wrinkle_cad.pattern.piece.piece import PatternPiece
 from wrinkle_cad.pattern.piece.stacking import laid_out
 

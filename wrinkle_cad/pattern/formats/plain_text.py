@@ -10,7 +10,7 @@ import re
 import unicodedata
 from typing import Final
 
-from wrinkle_cad.findings import Finding
+from wrinkle_cad.errors import Finding
 
 LONGEST_TEXT: Final = 250
 """Characters; DXF group values end at 255."""

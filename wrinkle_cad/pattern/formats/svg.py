@@ -16,9 +16,8 @@ import numpy as np
 from ezdxf.colors import aci2rgb
 
 from wrinkle_cad import settings
-from wrinkle_cad.errors import ExportError, InputError
+from wrinkle_cad.errors import ExportError, Finding, InputError
 from wrinkle_cad.files.atomic import write_atomically
-from wrinkle_cad.findings import Finding
 from wrinkle_cad.pattern.piece.piece import Floats, PatternPiece
 from wrinkle_cad.pattern.piece.stacking import laid_out
 

@@ -8,8 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import shapely
 
-from wrinkle_cad.errors import InputError
-from wrinkle_cad.findings import Finding
+from wrinkle_cad.errors import Finding, InputError
 
 from .allowance import cut_outline
 from .flat import FlatStrip, flat_strip

@@ -11,7 +11,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 import numpy.typing as npt
 
-from wrinkle_cad.findings import Finding
+from wrinkle_cad.errors import Finding
 
 from .options import Hand, NotchKind, PerSide
 

@@ -9,8 +9,7 @@ from typing import get_args
 import pytest
 
 from tests.report.strips import view_of, wavy_rails
-from wrinkle_cad.report.gap_list import ADVICE, gap_entry
-from wrinkle_cad.strip.gaps import Kind
+from wrinkle_cad.strip.gaps import ADVICE, Kind, gap_entry
 
 
 def test_a_gap_has_its_units_in_its_names() -> None:
