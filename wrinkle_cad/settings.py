@@ -154,6 +154,9 @@ PIECE_GAP: Final = 10.0
 PIECE_SIZE: Final = "M"
 """Size of a piece when the user says nothing; pattern CAD refuses a piece without one."""
 
+STYLE_NAME: Final = "PATTERN"
+"""What a file of pieces calls its style when nobody named it."""
+
 PATTERN_OVERLAP: Final = "split"
 """A pattern that overlaps itself is cut at bridges into as few pieces as possible."""
 

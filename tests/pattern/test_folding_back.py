@@ -5,10 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from tests.pattern import strips
 from wrinkle_cad.pattern.piece.making import make_piece
 from wrinkle_cad.pattern.piece.options import PieceSettings
-
-from . import strips
 
 
 def folded(flat_p, flat_q, bridges, fold):

@@ -6,6 +6,9 @@ import xml.etree.ElementTree as ET
 
 import pytest
 
+from tests.pattern import strips
+from tests.pattern.formats.test_dxf import audit
+from tests.pattern.group_codes import read_group_codes
 from wrinkle_cad.pattern.check.judging import judge_dxf
 from wrinkle_cad.pattern.formats.dxf import dxf_file
 from wrinkle_cad.pattern.formats.pdf import pdf_file
@@ -13,10 +16,6 @@ from wrinkle_cad.pattern.formats.plain_text import LONGEST_TEXT, ascii_name, asc
 from wrinkle_cad.pattern.formats.svg import svg_bytes, write_svg
 from wrinkle_cad.pattern.piece.making import make_pieces
 from wrinkle_cad.pattern.piece.options import PieceSettings
-
-from . import strips
-from .group_codes import read_group_codes
-from .test_dxf import audit
 
 HOSTILE = {
     "newline": "vamp\n  0\nENDSEC\n  0\nEOF\n",

@@ -7,13 +7,12 @@ import re
 import ezdxf
 import pytest
 
+from tests.pattern import strips
 from wrinkle_cad.errors import InputError
 from wrinkle_cad.pattern.check.judging import judge_dxf
 from wrinkle_cad.pattern.formats.dxf import dxf_bytes
 from wrinkle_cad.pattern.piece.making import make_pieces
 from wrinkle_cad.pattern.piece.options import NotchRule, PieceSettings
-
-from . import strips
 
 SQUARE = ((0, 0), (100, 0), (100, 50), (0, 50))
 

@@ -8,15 +8,14 @@ from datetime import datetime
 
 import pytest
 
-from wrinkle_cad.pattern.formats.dxf import dxf_bytes
+from tests.pattern import strips
+from tests.pattern.group_codes import area_of, read_group_codes
+from wrinkle_cad.pattern.formats.dxf import dxf_bytes, write_dxf
 from wrinkle_cad.pattern.piece.making import make_pieces
 from wrinkle_cad.pattern.piece.options import NotchRule, PieceSettings
 
-from . import strips
-from .group_codes import area_of, read_group_codes
-
 STYLE_KEYS = {
-    "Style Name": "vamp",
+    "Style Name": "Jazz 84",
     "Creation Date": "29-02-2024",
     "Creation Time": "13:05",
     "Author": "wrinkle-cad",
@@ -50,7 +49,9 @@ def two_pieces(kind="v"):
 
 @pytest.fixture(params=["aama", "astm"])
 def dxf(request):
-    content = dxf_bytes(two_pieces(), profile=request.param, timestamp=datetime(2024, 2, 29, 13, 5))
+    content = dxf_bytes(
+        two_pieces(), profile=request.param, style="Jazz 84", timestamp=datetime(2024, 2, 29, 13, 5)
+    )
     return read_group_codes(content)
 
 
@@ -119,7 +120,7 @@ def test_style_and_piece_texts_are_complete(dxf):
     assert keys(dxf.blocks["VAMP_38"]) == {
         "Piece Name": "vamp",
         "Size": "38",
-        "Quantity": "2,1",
+        "Quantity": "2,0",
         "Material": "Calf",
     }
     assert keys(dxf.blocks["TONGUE_38"])["Piece Name"] == "tongue"
@@ -202,3 +203,18 @@ def test_equal_names_give_different_blocks():
     pieces = [*make_pieces(*strips.rectangle(), name="a b")] * 2
     dxf = read_group_codes(dxf_bytes(pieces, profile="aama"))
     assert list(dxf.blocks) == ["A_B_M", "A_B-2_M"]
+
+
+def test_each_hand_is_ordered_by_itself_and_no_mirrored_copy_with_it():
+    settings = PieceSettings(hand="left", quantity=2)
+    dxf = read_group_codes(
+        dxf_bytes(make_pieces(*strips.rectangle(), name="a", settings=settings), profile="aama")
+    )
+    ordered = {keys(e)["Piece Name"]: keys(e)["Quantity"] for e in dxf.blocks.values()}
+    assert ordered == {"a LEFT": "2,0", "a RIGHT": "2,0"}
+
+
+def test_the_style_is_named_after_the_file_where_nobody_named_it(tmp_path):
+    write_dxf(tmp_path / "Jazz 84.dxf", two_pieces(), profile="aama")
+    dxf = read_group_codes((tmp_path / "Jazz 84.dxf").read_bytes())
+    assert keys(dxf.entities)["Style Name"] == "Jazz 84"

@@ -4,11 +4,10 @@ import numpy as np
 import pytest
 import shapely
 
+from tests.pattern import strips
 from wrinkle_cad.pattern.formats.contours import closed_spline, with_arcs
 from wrinkle_cad.pattern.piece.making import make_pieces
 from wrinkle_cad.pattern.piece.options import PieceSettings
-
-from . import strips
 
 TOLERANCE = 0.05
 

@@ -2,15 +2,14 @@ from __future__ import annotations
 
 import pytest
 
+from tests.pattern import strips
+from tests.pattern.group_codes import read_group_codes
 from wrinkle_cad.errors import InputError
 from wrinkle_cad.pattern.check.judging import judge_dxf
 from wrinkle_cad.pattern.formats.dxf import dxf_bytes, write_dxf
 from wrinkle_cad.pattern.formats.layers import PROFILES, ROLES, profile_from
 from wrinkle_cad.pattern.piece.making import make_pieces
 from wrinkle_cad.pattern.piece.options import NotchRule, PieceSettings
-
-from . import strips
-from .group_codes import read_group_codes
 
 OWN = """
 name = "atom"

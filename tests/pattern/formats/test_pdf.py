@@ -6,12 +6,12 @@ import zlib
 import numpy as np
 import pytest
 
+from tests.pattern import strips
 from wrinkle_cad.errors import ExportError, InputError
 from wrinkle_cad.pattern.formats.pdf import pdf_file, write_pdf
 from wrinkle_cad.pattern.piece.making import make_pieces
 from wrinkle_cad.pattern.piece.options import PieceSettings
 
-from . import strips
 from .test_dxf import FULL
 
 POINTS_PER_MM = 72.0 / 25.4

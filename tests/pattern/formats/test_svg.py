@@ -5,13 +5,13 @@ import xml.etree.ElementTree as ET
 import numpy as np
 import pytest
 
+from tests.pattern import strips
+from tests.pattern.group_codes import area_of
 from wrinkle_cad.errors import ExportError, InputError
 from wrinkle_cad.pattern.formats.svg import svg_bytes, write_svg
 from wrinkle_cad.pattern.piece.making import make_pieces
 from wrinkle_cad.pattern.piece.stacking import laid_out
 
-from . import strips
-from .group_codes import area_of
 from .test_dxf import FULL
 
 SVG = "{http://www.w3.org/2000/svg}"

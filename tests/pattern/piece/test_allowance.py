@@ -6,12 +6,11 @@ import numpy as np
 import pytest
 import shapely
 
+from tests.pattern import strips
 from wrinkle_cad.pattern.piece.allowance import cut_outline
 from wrinkle_cad.pattern.piece.making import make_pieces
 from wrinkle_cad.pattern.piece.options import PieceSettings
 from wrinkle_cad.pattern.piece.piece import make_outline
-
-from . import strips
 
 TOLERANCE = 0.05
 

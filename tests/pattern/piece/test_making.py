@@ -4,12 +4,11 @@ import numpy as np
 import pytest
 import shapely
 
+from tests.pattern import strips
 from wrinkle_cad.errors import InputError
 from wrinkle_cad.pattern.piece.making import make_piece, make_pieces
 from wrinkle_cad.pattern.piece.options import SIDES, NotchRule, PieceSettings
 from wrinkle_cad.pattern.piece.stacking import laid_out
-
-from . import strips
 
 
 def test_a_piece_stands_in_the_fixed_frame():

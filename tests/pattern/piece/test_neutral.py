@@ -3,11 +3,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from tests.pattern import strips
 from wrinkle_cad.pattern.piece.making import make_piece
 from wrinkle_cad.pattern.piece.options import PieceSettings
 from wrinkle_cad.strip import triangulate, unroll
-
-from . import strips
 
 RADIUS, ANGLE, WIDTH, THICKNESS = 30.0, 2.0, 25.0, 2.0
 

@@ -4,12 +4,11 @@ import numpy as np
 import pytest
 import shapely
 
+from tests.pattern import strips
 from wrinkle_cad.errors import InputError
 from wrinkle_cad.pattern.piece.making import make_pieces
 from wrinkle_cad.pattern.piece.notches import corner_arcs, notch_arcs
 from wrinkle_cad.pattern.piece.options import NotchRule, PieceSettings
-
-from . import strips
 
 
 def test_counted_notches_divide_the_rail_evenly():

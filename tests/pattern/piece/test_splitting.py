@@ -6,13 +6,12 @@ import numpy as np
 import pytest
 import shapely
 
+from tests.pattern import strips
 from wrinkle_cad.errors import InputError
 from wrinkle_cad.pattern.piece.flat import flat_strip
 from wrinkle_cad.pattern.piece.making import make_piece, make_pieces
 from wrinkle_cad.pattern.piece.options import END_SIDE, START_SIDE, NotchRule, PieceSettings
 from wrinkle_cad.pattern.piece.splitting import overlaps
-
-from . import strips
 
 SETTINGS = PieceSettings(
     seam_allowance=(4.0, 4.0, 6.0, 6.0), notches_p=NotchRule(count=7), notches_q=NotchRule(count=5)

@@ -41,13 +41,19 @@ _NAME_LENGTH: Final = 20
 
 
 def block_document(
-    pieces: Sequence[PatternPiece], profile: Profile, *, release: str, timestamp: datetime
+    pieces: Sequence[PatternPiece],
+    profile: Profile,
+    *,
+    style: str,
+    release: str,
+    timestamp: datetime,
 ) -> tuple[DxfDocument, tuple[Finding, ...]]:
     """Returns a document with one block per piece, and which texts had to be changed.
 
     Args:
         pieces: laid out already.
         profile: ``aama`` or ``astm``, or a map with other layers for the same roles.
+        style: what all pieces belong to.
         release: DXF release of the document.
         timestamp: the creation date and time that the file states.
     """
@@ -61,7 +67,8 @@ def block_document(
         _write_lines(block, piece, profile)
         _write_marks(block, piece, profile)
         document.modelspace().add_blockref(name, (0.0, 0.0), dxfattribs={"layer": "1"})
-    _write_style(document, pieces, timestamp)
+    findings += text_changed("style name", style, _stated(style) or settings.STYLE_NAME)
+    _write_style(document, pieces, style, timestamp)
     _add_layers(document, profile)
     return document, tuple(findings)
 
@@ -116,7 +123,8 @@ def _write_texts(block: BlockLayout, piece: PatternPiece, profile: Profile) -> l
     system = [
         f"Piece Name: {name}",
         f"Size: {size}",
-        f"Quantity: {piece.quantity},1",
+        # Copies as drawn, then mirrored copies. Pieces for the other foot are pieces of their own.
+        f"Quantity: {piece.quantity},0",
     ]
     if material:
         system.append(f"Material: {material}")
@@ -225,10 +233,10 @@ def _write_marks(block: BlockLayout, piece: PatternPiece, profile: Profile) -> N
 
 
 def _write_style(
-    document: DxfDocument, pieces: Sequence[PatternPiece], timestamp: datetime
+    document: DxfDocument, pieces: Sequence[PatternPiece], style: str, timestamp: datetime
 ) -> None:
     lines = (
-        f"Style Name: {_stated(pieces[0].name) or 'PIECE'}",
+        f"Style Name: {_stated(style) or settings.STYLE_NAME}",
         f"Creation Date: {timestamp:%d-%m-%Y}",
         f"Creation Time: {timestamp:%H:%M}",
         "Author: wrinkle-cad",

@@ -56,6 +56,7 @@ def dxf_file(
     version: DxfVersion | None = None,
     curves: Curves = "lines",
     test_square: bool = False,
+    style: str = settings.STYLE_NAME,
     timestamp: datetime | None = None,
 ) -> DxfFile:
     """Returns a DXF file of all pieces, laid out side by side at one scale.
@@ -66,6 +67,7 @@ def dxf_file(
         version: of DXF; None is R2000 for drawings and R12 for blocks (aama, astm).
         curves: contours as ``lines``, with ``arcs`` or as ``splines``; blocks have lines only.
         test_square: add a square of 100 mm to check the scale on the machine.
+        style: what all pieces belong to, as files of pieces (aama, astm) state it.
         timestamp: what the file says about when it was made; ``EPOCH`` if None.
 
     Raises:
@@ -80,7 +82,7 @@ def dxf_file(
         if chosen.is_blocks:
             everything = [*pieces, scale_piece(pieces[0])] if test_square else pieces
             document, findings = block_document(
-                laid_out(everything), chosen, release=release, timestamp=moment
+                laid_out(everything), chosen, style=style, release=release, timestamp=moment
             )
             if release != "R12":
                 findings = (*findings, _layout_blocks_finding(chosen.name, release))
@@ -113,6 +115,7 @@ def dxf_bytes(
     version: DxfVersion | None = None,
     curves: Curves = "lines",
     test_square: bool = False,
+    style: str = settings.STYLE_NAME,
     timestamp: datetime | None = None,
 ) -> bytes:
     """Returns only the bytes of ``dxf_file``, with the same arguments and errors."""
@@ -122,6 +125,7 @@ def dxf_bytes(
         version=version,
         curves=curves,
         test_square=test_square,
+        style=style,
         timestamp=timestamp,
     ).content
 
@@ -134,9 +138,12 @@ def write_dxf(
     version: DxfVersion | None = None,
     curves: Curves = "lines",
     test_square: bool = False,
+    style: str | None = None,
     timestamp: datetime | None = None,
 ) -> tuple[Finding, ...]:
     """Writes a DXF file, whole or not at all, and returns the findings of ``dxf_file``.
+
+    The style is named after the file where none is given.
 
     The other arguments are those of ``dxf_file``.
 
@@ -150,6 +157,7 @@ def write_dxf(
         version=version,
         curves=curves,
         test_square=test_square,
+        style=path.stem if style is None else style,
         timestamp=timestamp,
     )
     try:
