@@ -1,6 +1,6 @@
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 
 import numpy as np
 import pytest
@@ -283,6 +283,68 @@ def test_a_closed_curve_ends_where_it_began() -> None:
     coarse = sample_curve(circle, (0.0, 2 * np.pi), 100.0)
     assert len(coarse.points) == 3
     assert segment_lengths(coarse).min() > 10
+
+
+def largest_shift_when_run_the_other_way(
+    point_at: Curve,
+    interval: tuple[float, float],
+    tolerance: float,
+    breaks: Sequence[float] = (),
+    max_chord: float | None = None,
+) -> float:
+    """mm, between the vertices of a curve and those of the same curve run the other way."""
+    total = sum(interval)
+    samples = sample_curve(point_at, interval, tolerance, breaks=breaks, max_chord=max_chord)
+    turned = sample_curve(
+        lambda t: point_at(total - t),
+        interval,
+        tolerance,
+        breaks=[total - at for at in breaks],
+        max_chord=max_chord,
+    )
+    assert len(turned.points) == len(samples.points)
+    return float(np.abs(turned.points[::-1] - samples.points).max())
+
+
+def symmetric_waves(t: FloatArray) -> FloatArray:
+    """Flatter than a coarse tolerance in the middle, and the same seen from either end."""
+    return np.stack((100 * t, 2 * np.sin(40 * t) * t, 0 * t), axis=1)
+
+
+@pytest.mark.parametrize("tolerance", [1.5, 0.2, 0.01])
+def test_a_curve_run_the_other_way_has_the_same_vertices(tolerance: float) -> None:
+    curves = {**CURVES, "symmetric waves": (symmetric_waves, (-1.0, 1.0))}
+    for name, (point_at, interval) in curves.items():
+        shift = largest_shift_when_run_the_other_way(point_at, interval, tolerance)
+        assert shift < 1e-9, name
+
+
+def shift_of_random_spline(seed: int) -> float:
+    generator = np.random.default_rng(seed)
+    degree, poles = int(generator.integers(2, 9)), int(generator.integers(10, 30))
+    return largest_shift_when_run_the_other_way(
+        b_spline(degree, 5000 + seed, poles=poles),
+        (0.0, 1.0),
+        10 ** generator.uniform(-2, 0),
+        generator.uniform(0, 1, seed % 4).tolist(),
+        3.0 if seed % 5 == 0 else None,
+    )
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_random_splines_run_the_other_way_have_the_same_vertices(seed: int) -> None:
+    assert shift_of_random_spline(seed) < 1e-9
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("seed", range(20, 320))
+def test_many_random_splines_run_the_other_way_have_the_same_vertices(seed: int) -> None:
+    assert shift_of_random_spline(seed) < 1e-9
+
+
+def test_breaks_merge_into_the_same_one_from_either_end() -> None:
+    breaks = [0.0, 0.3, 0.3 + 4e-7, 0.3 + 8e-7, 0.3 + 1.2e-6, 0.8, 0.8 + 5e-7]
+    assert largest_shift_when_run_the_other_way(line, (0.0, 1.0), 0.05, breaks) < 1e-12
 
 
 @pytest.mark.parametrize("max_chord", [0.05, 0.5, 2.5, 100.0])

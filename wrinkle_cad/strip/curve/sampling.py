@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from bisect import bisect_left
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Final
@@ -32,7 +33,7 @@ MOST_TABLE_POINTS: Final = 4_000_000
 CHECKS_PER_CHORD: Final = 16
 LEAST_CHECKS: Final = 512
 GOLDEN: Final = 0.6180339887498949
-"""Checks stand at this offset, so that they never coincide with the table's dyadic parameters."""
+"""Checks stand at this offset from either end of a chord, off the table's dyadic parameters."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -63,8 +64,10 @@ def sample_curve(
     number. A closed curve (same point at both ends) ends with its first point, and has at least two
     chords. Where the parameter stands still for a stretch, that stretch gets no vertex of its own.
 
-    Breaks that follow each other within 1e-6 of the curve's length merge into the first of them,
-    or into the end of the interval where that is the near one, so that no chord is shorter.
+    The curve run the other way has the same vertices, to round-off.
+
+    Breaks that follow each other within 1e-6 of the curve's length merge into the one nearest its
+    middle, or into the end of the interval where that is the near one, so that no chord is shorter.
     Features that are narrower than 1e-3 of a smooth piece's parameter range can be missed.
 
     Args:
@@ -157,7 +160,8 @@ def _place(
     # Polynomials and round-off blur lengths; a hundredth keeps chords clear of the limit.
     shortest = 1.01 * SHORTEST_SEGMENT_PER_LENGTH * length
     longest = math.inf if max_chord is None else max_chord * (1 - 1e-9)
-    spacing = min(length / TABLE_SHARE, longest / 8)
+    # A little more than a dyadic share, so that no decision hangs on round-off.
+    spacing = 1.01 * min(length / TABLE_SHARE, longest / 8)
     sag = TABLE_SAG_PER_TOLERANCE * tolerance
     t, x = tabulate(cells.edges, cells.coefficients, sag, spacing, MOST_TABLE_POINTS)
     if t[-1] < corners[-1] or longest < shortest:
@@ -195,20 +199,24 @@ def _check_size(size: float, length: float, tolerance: float) -> None:
 
 
 def _merged(corners: FloatArray, arc: FloatArray, shortest: float) -> FloatArray:
-    """Leaves out corners too close behind the one before, or too close before the end."""
-    kept = [0]
+    """Leaves out corners too close to an end, or to one nearer the middle of the curve."""
     last = len(corners) - 1
-    for i in range(1, last):
-        if arc[i] - arc[kept[-1]] >= shortest and arc[last] - arc[i] >= shortest:
-            kept.append(i)
-    return corners[[*kept, last]]
+    kept = [0, last]
+    outwards = np.argsort(np.abs(arc[1:last] - 0.5 * (arc[0] + arc[last])), kind="stable")
+    for i in (outwards + 1).tolist():
+        after = bisect_left(kept, i)
+        if arc[i] - arc[kept[after - 1]] >= shortest and arc[kept[after]] - arc[i] >= shortest:
+            kept.insert(after, i)
+    return corners[kept]
 
 
 def _largest_gap(point_at: PointAt, parameters: FloatArray, points: FloatArray) -> float:
     """Largest distance, mm, from the curve itself to its chords."""
     chords = len(parameters) - 1
     count = max(CHECKS_PER_CHORD, -(-LEAST_CHECKS // chords))
-    shares = (np.arange(count) + GOLDEN) / count
+    half = (np.arange(-(-count // 2)) + GOLDEN) / count
+    shares = np.concatenate((half, 1.0 - half[::-1]))
+    count = len(shares)
     between = parameters[:-1, None] + np.diff(parameters)[:, None] * shares
     curve = evaluate(point_at, between.ravel()).reshape(chords, count, 3)
     chord = np.diff(points, axis=0)[:, None, :]
