@@ -25,7 +25,6 @@ BISECTIONS: Final = 10
 """Table points stand about 1/14 of a chord apart: an end is found to 1e-4 of a chord. Not to
 round-off: ends on this grid stay where they are when round-off differs, as it does for the curve
 run the other way; ends off it pass the difference on to the next, some 1e4-fold at inflections."""
-SAME: Final = 1e-9
 EVENING_STEPS: Final = 6
 RETRIES: Final = (1.0, 0.98, 0.93, 0.85, 0.7, 0.5, 0.3)
 """Shares of the tolerance's square root, tried until no chord comes out too short."""
@@ -101,7 +100,7 @@ def tabulate(
 
 
 @compiled
-def _excess(
+def excess(
     x: FloatArray,
     first: int,
     last: int,
@@ -112,8 +111,18 @@ def _excess(
 ) -> float:
     """By what factor the chord a-b exceeds the limits, squared; above 1 it is not allowed.
 
-    The largest of the gaps of table points first..last over the tolerance and of the chord over
-    the longest; infinite if it is too short. Above ``enough`` the count stops.
+    Args:
+        x: (k, 3) float64, mm: a table of curve points, as ``tabulate`` makes it.
+        first: the first table point between the chord's ends.
+        last: the last one; before ``first`` if there is none.
+        a: mm; where the chord begins.
+        b: mm; where it ends.
+        limits: mm; distance of the curve from a chord, longest chord (may be infinite), shortest.
+        enough: at a factor above it the rest is not looked at.
+
+    Returns:
+        The largest of the points' gaps over the tolerance and the chord over the longest, squared;
+        infinite if the chord is too short.
     """
     tolerance, longest, shortest = limits
     length2 = (b[0] - a[0]) ** 2 + (b[1] - a[1]) ** 2 + (b[2] - a[2]) ** 2
@@ -179,7 +188,7 @@ def _refine(
     for _ in range(BISECTIONS):
         middle = 0.5 * (low + high)
         b = point_in_cells(edges, coefficients, middle)
-        if _excess(x, first, k, a, b, limits, 1.0) <= 1.0:
+        if excess(x, first, k, a, b, limits, 1.0) <= 1.0:
             low, found = middle, True
         else:
             high = middle
@@ -205,13 +214,13 @@ def _greedy(
     parameter = t[start]
     first = start + 1
     for count in range(len(out)):
-        if _excess(x, first, end - 1, a, goal, limits, 1.0) <= 1.0:
+        if excess(x, first, end - 1, a, goal, limits, 1.0) <= 1.0:
             out[count] = t[end]
             return count + 1
         k = min(_horizon(x, first, end, a, limits, cones), end - 1)
         while k >= first:
             reached = (x[k, 0], x[k, 1], x[k, 2])
-            if _excess(x, first, k - 1, a, reached, limits, 1.0) <= 1.0:
+            if excess(x, first, k - 1, a, reached, limits, 1.0) <= 1.0:
                 break
             k -= 1
         low = t[k] if k >= first else parameter
@@ -233,7 +242,7 @@ def _scaled(limits: tuple[float, float, float], share: float) -> tuple[float, fl
 
 
 @compiled
-def _even_piece(
+def even_piece(
     curve: tuple[FloatArray, FloatArray, FloatArray, FloatArray],
     start: int,
     end: int,
@@ -242,7 +251,20 @@ def _even_piece(
     trial: FloatArray,
     cones: FloatArray,
 ) -> int:
-    """Vertices of one smooth piece into ``best``; the number of chords, or -1."""
+    """Places the vertices of one smooth piece from its start, evened out.
+
+    Args:
+        curve: the table's parameters and points, the cells' edges and coefficients.
+        start: table point where the piece begins.
+        end: table point where it ends.
+        limits: mm; distance of the curve from a chord, longest chord (may be infinite), shortest.
+        best: (k,) float64: receives the parameters of the vertices after ``start`` up to ``end``.
+        trial: (k,) float64, scratch.
+        cones: (k, 5) float64, scratch.
+
+    Returns:
+        How many chords there are, or -1 if one is bound to be too short.
+    """
     count = -1
     good = 1.0
     for share in RETRIES:
@@ -263,140 +285,3 @@ def _even_piece(
         else:
             bad = share
     return count
-
-
-@compiled
-def _worst_excess(
-    curve: tuple[FloatArray, FloatArray, FloatArray, FloatArray],
-    start: int,
-    end: int,
-    limits: tuple[float, float, float],
-    run: FloatArray,
-) -> float:
-    """The largest excess of the chords from table point ``start`` over the vertices of ``run``."""
-    t, x, edges, coefficients = curve
-    a = (x[start, 0], x[start, 1], x[start, 2])
-    first = start + 1
-    worst = 0.0
-    for vertex in range(len(run)):
-        last = first
-        while last < end and t[last] < run[vertex]:
-            last += 1
-        b = point_in_cells(edges, coefficients, run[vertex])
-        worst = max(worst, _excess(x, first, last - 1, a, b, limits, np.inf))
-        a, first = b, last
-    return worst
-
-
-@compiled
-def _mirrored(
-    curve: tuple[FloatArray, FloatArray, FloatArray, FloatArray],
-) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
-    """The curve run the other way, at the negative of its parameter."""
-    t, x, edges, coefficients = curve
-    turned = coefficients[::-1].copy()
-    turned[:, 1::2] *= -1.0
-    return -t[::-1], x[::-1].copy(), -edges[::-1], turned
-
-
-@compiled
-def _is_first(x: FloatArray, y: FloatArray) -> bool:
-    """Whether x comes before y by the first coordinate in which they differ beyond round-off."""
-    for axis in range(3):
-        difference = x[axis] - y[axis]
-        if abs(difference) > SAME * (abs(x[axis]) + abs(y[axis])):
-            return difference < 0.0
-    return True
-
-
-@compiled
-def _middle(
-    curve: tuple[FloatArray, FloatArray, FloatArray, FloatArray], run: FloatArray
-) -> FloatArray:
-    """The sum of the vertices of a run."""
-    total = np.zeros(3)
-    for vertex in range(len(run)):
-        point = point_in_cells(curve[2], curve[3], run[vertex])
-        for axis in range(3):
-            total[axis] += point[axis]
-    return total
-
-
-@compiled
-def _undirected_piece(
-    curve: tuple[FloatArray, FloatArray, FloatArray, FloatArray],
-    mirrored: tuple[FloatArray, FloatArray, FloatArray, FloatArray],
-    start: int,
-    end: int,
-    limits: tuple[float, float, float],
-    scratch: tuple[FloatArray, FloatArray, FloatArray, FloatArray],
-) -> int:
-    """Vertices of one smooth piece, placed from both ends; the number of chords, or -1.
-
-    The run with fewer chords is taken; of two equally long ones the mean, or where that breaks a
-    limit the run that stays farther below them. They stand in the first array of ``scratch``.
-    """
-    best, back, trial, cones = scratch
-    size = len(curve[0]) - 1
-    count = _even_piece(curve, start, end, limits, best, trial, cones)
-    other = _even_piece(mirrored, size - end, size - start, limits, trial, back, cones)
-    for i in range(other - 1):
-        back[i] = -trial[other - 2 - i]
-    if other < 1 or 0 < count < other:
-        return count
-    back[other - 1] = curve[0][end]
-    if count == other:
-        trial[:count] = 0.5 * (best[:count] + back[:count])
-        if _worst_excess(curve, start, end, limits, trial[:count]) <= 1.0:
-            best[:count] = trial[:count]
-            return count
-        there = _worst_excess(curve, start, end, limits, best[:count])
-        here = _worst_excess(curve, start, end, limits, back[:count])
-        if there < (1.0 - SAME) * here:
-            return count
-        if there <= (1.0 + SAME) * here and _is_first(
-            _middle(curve, best[:count]), _middle(curve, back[:count])
-        ):
-            return count
-    best[:other] = back[:other]
-    return other
-
-
-@compiled
-def place_chords(
-    t: FloatArray,
-    x: FloatArray,
-    edges: FloatArray,
-    coefficients: FloatArray,
-    corners: IndexArray,
-    limits: tuple[float, float, float],
-) -> tuple[FloatArray, int]:
-    """Places vertices on every smooth piece between corners.
-
-    Args:
-        t: (k,) float64: parameters of a table of curve points, as ``tabulate`` makes it.
-        x: (k, 3) float64, mm: its points.
-        edges: (c + 1,) float64: the cells.
-        coefficients: (c, 17, 3) float64, mm.
-        corners: (s + 1,) int64: table points that must be vertices, first and last included.
-        limits: mm; distance of the curve from a chord, longest chord (may be infinite), shortest.
-
-    Returns:
-        The vertices' parameters in order, and -1, or the piece (its index) that cannot be done
-        because a chord would have to be shorter than the shortest.
-    """
-    curve = (t, x, edges, coefficients)
-    mirrored = _mirrored(curve)
-    size = 2 * len(t) + 16
-    out = np.empty(size)
-    scratch = (np.empty(size), np.empty(size), np.empty(size), np.empty((len(t), 5)))
-    out[0] = t[0]
-    filled = 1
-    for piece in range(len(corners) - 1):
-        start, end = corners[piece], corners[piece + 1]
-        count = _undirected_piece(curve, mirrored, start, end, limits, scratch)
-        if count < 0 or filled + count > size:
-            return out[:filled], piece
-        out[filled : filled + count] = scratch[0][:count]
-        filled += count
-    return out[:filled], -1

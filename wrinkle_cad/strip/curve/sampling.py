@@ -21,7 +21,8 @@ from wrinkle_cad.settings import (
 )
 
 from .chebyshev import Cells, FloatArray, PointAt, evaluate, fit_cells
-from .chords import IndexArray, place_chords, tabulate
+from .chords import IndexArray, tabulate
+from .placing import place_chords
 
 FIRST_CELLS: Final = 64
 """A curve starts with so many cells of 17 points, whatever the number of its smooth pieces ..."""
