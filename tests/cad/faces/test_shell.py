@@ -18,15 +18,8 @@ from OCP.gp import gp_Pnt, gp_Vec
 from OCP.TopLoc import TopLoc_Location
 from OCP.TopoDS import TopoDS_Face, TopoDS_Shape
 
-from wrinkle_cad.cad.faces.shell import build_shell
-from wrinkle_cad.cad.kernel import topology as kernel
-from wrinkle_cad.cad.rail.directrix import Directrix, make_directrix, sample_directrix
-from wrinkle_cad.errors import CadError, InputError
-from wrinkle_cad.strip.curve.sampling import Samples
-from wrinkle_cad.strip.triangulation import P_STEP, Q_STEP, measured
-
-from .makers import line, polyline
-from .strips import (
+from tests.cad.makers import line, polyline
+from tests.cad.strips import (
     Strip,
     edge_of,
     faults_after_step,
@@ -36,6 +29,12 @@ from .strips import (
     random_edge,
     strip_between,
 )
+from wrinkle_cad.cad.faces.shell import build_shell
+from wrinkle_cad.cad.kernel import topology as kernel
+from wrinkle_cad.cad.rail.directrix import Directrix, make_directrix, sample_directrix
+from wrinkle_cad.errors import CadError, InputError
+from wrinkle_cad.strip.curve.sampling import Samples
+from wrinkle_cad.strip.triangulation import P_STEP, Q_STEP, measured
 
 KINDS = ("cones", "facets")
 

@@ -17,10 +17,9 @@ from OCP.gp import gp_Ax2, gp_Circ, gp_Dir, gp_Pln, gp_Pnt, gp_Trsf, gp_Vec
 from OCP.TopLoc import TopLoc_Location
 from OCP.TopoDS import TopoDS_Edge, TopoDS_Shape
 
+from tests.cad.strips import edge_of, points_on_edge
 from wrinkle_cad.cad.kernel import topology as kernel
 from wrinkle_cad.errors import CadError, InputError
-
-from .strips import edge_of, points_on_edge
 
 BOX = BRepPrimAPI_MakeBox(1.0, 2.0, 3.0).Shape()
 CYLINDER = BRepPrimAPI_MakeCylinder(10.0, 5.0).Shape()

@@ -13,6 +13,8 @@ from OCP.BRepBuilderAPI import BRepBuilderAPI_MakeEdge
 from OCP.BRepTools import BRepTools
 from OCP.TopoDS import TopoDS_Edge, TopoDS_Shape
 
+from tests.cad.makers import box, line, polyline
+from tests.cad.strips import edge_of, random_edge
 from wrinkle_cad.cad.kernel import topology as kernel
 from wrinkle_cad.cad.rail.directrix import (
     Directrix,
@@ -23,9 +25,6 @@ from wrinkle_cad.cad.rail.directrix import (
     sample_directrix,
 )
 from wrinkle_cad.errors import InputError
-
-from .makers import box, line, polyline
-from .strips import edge_of, random_edge
 
 HAS_CADQUERY = importlib.util.find_spec("cadquery") is not None
 # CadQuery has no release for the kernel of build123d 0.13.
