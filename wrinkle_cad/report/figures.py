@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from wrinkle_cad.pattern.piece.piece import PatternPiece
+from wrinkle_cad.strip.curve.polyline import arc_lengths
 from wrinkle_cad.strip.triangulation import Triangulation
 
 if TYPE_CHECKING:
@@ -119,13 +120,10 @@ def plot_pattern(ax: Axes, pieces: Sequence[PatternPiece]) -> Axes:
 def along(triangulation: Triangulation) -> NDArray[np.float64]:
     """Returns (m+n-1,) mm: where each bridge stands along the middle of both rails."""
     i, j = triangulation.bridges.T
-    middle: NDArray[np.float64] = (_arc(triangulation.p)[i] + _arc(triangulation.q)[j]) / 2
+    middle: NDArray[np.float64] = (
+        arc_lengths(triangulation.p)[i] + arc_lengths(triangulation.q)[j]
+    ) / 2
     return middle
-
-
-def _arc(rail: NDArray[np.float64]) -> NDArray[np.float64]:
-    chords = np.linalg.norm(np.diff(rail, axis=0), axis=1)
-    return np.concatenate(([0.0], np.cumsum(chords)))
 
 
 def _label(triangulation: Triangulation) -> str:

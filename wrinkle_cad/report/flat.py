@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from wrinkle_cad import settings
 from wrinkle_cad.pattern.piece.options import P_SIDE, Q_SIDE
 from wrinkle_cad.pattern.piece.piece import PatternPiece
+from wrinkle_cad.strip.curve.polyline import arc_lengths, points_at
 from wrinkle_cad.strip.flat.unrolling import Unrolling
 from wrinkle_cad.strip.triangulation import Triangulation
 
@@ -84,11 +85,7 @@ def _placed(
     line: NDArray[np.float64], span: tuple[float, float], arcs: NDArray[np.float64]
 ) -> NDArray[np.float64]:
     """(k, 2): where arcs in space stand on a flat line that covers ``span`` of them."""
-    along = np.concatenate(([0.0], np.cumsum(np.linalg.norm(np.diff(line, axis=0), axis=1))))
+    along = arc_lengths(line)
     reach = span[1] - span[0]
     share = (arcs - span[0]) / reach if reach > 0.0 else np.zeros_like(arcs)
-    at = np.clip(share, 0.0, 1.0) * along[-1]
-    placed: NDArray[np.float64] = np.column_stack(
-        [np.interp(at, along, line[:, axis]) for axis in (0, 1)]
-    )
-    return placed
+    return points_at(line, along, np.clip(share, 0.0, 1.0) * along[-1])

@@ -19,6 +19,7 @@ import numpy.typing as npt
 
 from wrinkle_cad.settings import TWIST_PER_DEFECT
 
+from .curve.polyline import segment_lengths
 from .sightlines import BEFORE_P, BEFORE_Q, NEXT_P, NEXT_Q, look_along_path, padded_banks
 from .triangulation import Triangulation
 
@@ -96,8 +97,7 @@ def covered_lengths(triangulation: Triangulation, marked: npt.ArrayLike) -> tupl
 def _shares(triangulation: Triangulation, rail: int) -> Floats:
     """What each bridge covers of a rail, (k,) float64, mm."""
     points = triangulation.q if rail else triangulation.p
-    moved = np.diff(points[triangulation.bridges[:, rail]], axis=0)
-    half = 0.5 * np.sqrt((moved * moved).sum(axis=1))
+    half = 0.5 * segment_lengths(points[triangulation.bridges[:, rail]])
     shares: Floats = np.append(half, 0.0) + np.append(0.0, half)
     return shares
 

@@ -14,7 +14,8 @@ from wrinkle_cad.settings import (
     ROUND_OFF_PER_COORDINATE,
 )
 
-from .compiled import compiled
+from .curve.nearest import nearest_on_polyline
+from .curve.polyline import polyline_length
 
 Floats = npt.NDArray[np.float64]
 
@@ -144,7 +145,8 @@ def check_rails_apart(p: Floats, q: Floats, planarity: float) -> None:
     Raises:
         InputError: the strip has no width over a stretch; the message says where.
     """
-    p_gap, q_gap = _distances(p, q), _distances(q, p)
+    p_gap = nearest_on_polyline(p, q).distance
+    q_gap = nearest_on_polyline(q, p).distance
     p_limit = max(planarity, COINCIDENT_SAGITTAS * typical_sagitta(q))
     q_limit = max(planarity, COINCIDENT_SAGITTAS * typical_sagitta(p))
     if p_gap.max() <= p_limit and q_gap.max() <= q_limit:
@@ -156,7 +158,7 @@ def check_rails_apart(p: Floats, q: Floats, planarity: float) -> None:
     for name, gap, rail in (("P", p_gap, p), ("Q", q_gap, q)):
         first, last = _longest_run(gap <= planarity)
         if last - first >= 2:
-            length = float(np.sqrt((np.diff(rail[first : last + 1], axis=0) ** 2).sum(1)).sum())
+            length = polyline_length(rail[first : last + 1])
             raise InputError(
                 f"strip - P and Q coincide over {length:.3g} mm, from sample {first} to {last} of"
                 f" {name} - they may share one bank edge at most - trim both curves there"
@@ -171,28 +173,3 @@ def _longest_run(marked: npt.NDArray[np.bool_]) -> tuple[int, int]:
     starts, stops = edges[::2], edges[1::2]
     longest = int(np.argmax(stops - starts))
     return int(starts[longest]), int(stops[longest]) - 1
-
-
-@compiled
-def _distances(points: Floats, rail: Floats) -> Floats:
-    """Distance of each point from the polyline, (k,) float64."""
-    result = np.empty(points.shape[0])
-    bank = rail[1:] - rail[:-1]
-    inverse = np.empty(bank.shape[0])
-    for j in range(bank.shape[0]):
-        square = bank[j, 0] ** 2 + bank[j, 1] ** 2 + bank[j, 2] ** 2
-        inverse[j] = 1.0 / square if square > 0.0 else 0.0
-    for i in range(points.shape[0]):
-        nearest = np.inf
-        for j in range(bank.shape[0]):
-            x = points[i, 0] - rail[j, 0]
-            y = points[i, 1] - rail[j, 1]
-            z = points[i, 2] - rail[j, 2]
-            along = (x * bank[j, 0] + y * bank[j, 1] + z * bank[j, 2]) * inverse[j]
-            along = min(max(along, 0.0), 1.0)
-            x -= along * bank[j, 0]
-            y -= along * bank[j, 1]
-            z -= along * bank[j, 2]
-            nearest = min(nearest, x * x + y * y + z * z)
-        result[i] = np.sqrt(nearest)
-    return result

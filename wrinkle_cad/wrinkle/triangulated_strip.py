@@ -14,6 +14,7 @@ from numpy.typing import ArrayLike, NDArray
 from wrinkle_cad import settings
 from wrinkle_cad.errors import CadError, Finding, InputError
 from wrinkle_cad.strip.convexity import validity_matrix
+from wrinkle_cad.strip.curve.polyline import polyline_length
 from wrinkle_cad.strip.flat.unrolling import Unrolling, unroll, unroll_cones
 from wrinkle_cad.strip.gaps import find_gaps
 from wrinkle_cad.strip.triangulation import Triangulation, triangulate
@@ -213,9 +214,7 @@ class TriangulatedStrip:
     def _rail_lengths(self) -> tuple[float, float]:
         if self.surface == "cones":
             return self.p.length, self.q.length
-        chords = (np.diff(rail, axis=0) for rail in (self.triangulation.p, self.triangulation.q))
-        p_mm, q_mm = (float(np.linalg.norm(chord, axis=1).sum()) for chord in chords)
-        return p_mm, q_mm
+        return polyline_length(self.triangulation.p), polyline_length(self.triangulation.q)
 
     def pattern(self, piece_settings: PieceSettings | None = None, **options: Any) -> Pattern:
         """The flat pattern.

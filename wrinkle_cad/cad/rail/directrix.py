@@ -23,6 +23,7 @@ from wrinkle_cad.cad.kernel.evaluation import PoleCurve
 from wrinkle_cad.cad.kernel.splines import make_curve
 from wrinkle_cad.cad.kernel.topology import kernel_step
 from wrinkle_cad.errors import InputError
+from wrinkle_cad.strip.curve.polyline import polyline_length, segment_lengths
 
 from .chain import chain_of
 
@@ -151,7 +152,7 @@ def _polyline(points: Floats, label: str) -> PoleCurve:
         )
     if not np.isfinite(points).all():
         raise InputError(f"{label} - points with NaN or infinite coordinates - remove them")
-    chords = np.linalg.norm(np.diff(points, axis=0), axis=1)
+    chords = segment_lengths(points)
     if chords.min() <= settings.CONFUSION:
         i = int(chords.argmin())
         raise InputError(
@@ -203,10 +204,10 @@ def _kernel_curve(piece: PoleCurve) -> Geom_BSplineCurve:
 
 def _length(piece: PoleCurve) -> float:
     if piece.degree == 1:
-        return float(np.linalg.norm(np.diff(piece.poles, axis=0), axis=1).sum())
+        return polyline_length(piece.poles)
     with kernel_step("measure the length of a rail"):
         # Measured over a parameter as long as the poles, where the kernel's tolerances make sense.
-        size = float(np.linalg.norm(np.diff(piece.poles, axis=0), axis=1).sum())
+        size = polyline_length(piece.poles)
         adaptor = GeomAdaptor_Curve(_kernel_curve(piece.stretched(0.0, max(size, 1e-12))))
         return float(GCPnts_AbscissaPoint.Length_s(adaptor, settings.LENGTH_ERROR))
 

@@ -21,6 +21,8 @@ from wrinkle_cad.cad.faces.shell import build_shell
 from wrinkle_cad.cad.kernel.connectivity import edge_ends
 from wrinkle_cad.cad.rail.directrix import Directrix, make_directrix, sample_directrix
 from wrinkle_cad.errors import InputError
+from wrinkle_cad.strip.curve.nearest import nearest_on_polyline
+from wrinkle_cad.strip.curve.polyline import segment_lengths
 from wrinkle_cad.strip.curve.sampling import Samples
 from wrinkle_cad.strip.sampled_strip import SampledStrip
 from wrinkle_cad.strip.triangulation import Triangulation, triangulate
@@ -131,16 +133,10 @@ def _distances(points: Floats, side: Directrix) -> Floats:
     """Returns (k,) mm: how far points are from a curve, exact to far below the band's width."""
     parameters = np.union1d(np.linspace(*side.interval, settings.BAND_LINE), side.breaks)
     line = side.point_at(parameters)
-    chord = np.diff(line, axis=0)
-    square = np.maximum((chord**2).sum(axis=1), np.finfo(np.float64).tiny)
-    feet, speeds = np.empty(len(points)), np.empty(len(points))
-    for i, point in enumerate(points):
-        share = np.clip(((point - line[:-1]) * chord).sum(axis=1) / square, 0.0, 1.0)
-        off = line[:-1] + share[:, None] * chord - point
-        nearest = int((off * off).sum(axis=1).argmin())
-        step = parameters[nearest + 1] - parameters[nearest]
-        feet[i] = parameters[nearest] + share[nearest] * step
-        speeds[i] = np.sqrt(square[nearest]) / step
+    nearest = nearest_on_polyline(points, line)
+    steps = np.diff(parameters)[nearest.segment]
+    feet = parameters[nearest.segment] + nearest.share * steps
+    speeds = segment_lengths(line)[nearest.segment] / steps
     for _ in range(2):
         # A foot on the chord is off along the curve where the curve's speed varies.
         along = ((points - side.point_at(feet)) * side.tangent_at(feet)).sum(axis=1)

@@ -20,6 +20,7 @@ from scipy.interpolate import BSpline, make_interp_spline
 
 from wrinkle_cad import settings
 from wrinkle_cad.cad.kernel.splines import make_curve, make_curve_2d
+from wrinkle_cad.strip.curve.polyline import arc_lengths
 
 from .outline import Side
 
@@ -39,8 +40,7 @@ def drawn_edges(face: TopoDS_Face, sides: Sequence[Side]) -> list[TopoDS_Edge] |
         uv = _parameters(surface, side.points)
         if uv is None:
             return None
-        steps = np.linalg.norm(np.diff(side.points, axis=0), axis=1)
-        arc = np.concatenate(([0.0], np.cumsum(steps)))
+        arc = arc_lengths(side.points)
         edge = _drawn_edge(face, surface, make_interp_spline(arc, uv, k=3), arc)
         if edge is None:
             return None

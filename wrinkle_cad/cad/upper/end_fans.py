@@ -20,6 +20,7 @@ from wrinkle_cad import settings
 from wrinkle_cad.cad.kernel import topology as kernel
 from wrinkle_cad.cad.kernel.connectivity import edge_ends
 from wrinkle_cad.cad.kernel.splines import curve_arrays, make_surface
+from wrinkle_cad.strip.curve.polyline import segment_gaps
 
 Floats = NDArray[np.float64]
 
@@ -54,15 +55,11 @@ def _straight(start: Floats, end: Floats) -> TopoDS_Edge:
 
 def _height(run: Sequence[TopoDS_Edge], bridge: Floats) -> float:
     """Returns mm: how far the run of edges stands off the straight bridge."""
-    chord = bridge[1] - bridge[0]
-    square = max(float(chord @ chord), np.finfo(np.float64).tiny)
     worst = 0.0
     for edge in run:
         poles = curve_arrays(kernel.edge_curve(edge))[0]
         points = np.vstack((poles, *(end[None] for end in edge_ends(edge))))
-        share = np.clip((points - bridge[0]) @ chord / square, 0.0, 1.0)
-        gaps = np.linalg.norm(bridge[0] + share[:, None] * chord - points, axis=1)
-        worst = max(worst, float(gaps.max()))
+        worst = max(worst, float(segment_gaps(points, *bridge).max()))
     return worst
 
 

@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from wrinkle_cad import settings
 from wrinkle_cad.cad.rail.directrix import Directrix
 from wrinkle_cad.errors import InputError
+from wrinkle_cad.strip.curve.polyline import arc_lengths, points_at, polyline_length
 
 from .projection import Feet, UpperFaces
 
@@ -65,23 +66,21 @@ def rail_on(upper: UpperFaces, directrix: Directrix, name: str) -> Rail:
     """
     parameters = _even_parameters(directrix, settings.RAIL_POINTS)
     feet = upper.feet(directrix.point_at(parameters))
-    steps = np.linalg.norm(np.diff(feet.points, axis=0), axis=1)
-    length = float(steps.sum())
+    length = polyline_length(feet.points)
     if not length > settings.RAIL_LENGTH_MIN:
         raise InputError(
             f"rail {name} - its feet on the upper are one point, length {length:.3g} mm - more than"
             f" {settings.RAIL_LENGTH_MIN:.0e} mm is needed - draw it along the upper"
         )
-    shares = np.concatenate(([0.0], np.cumsum(steps))) / length
-    return Rail(shares, feet, unit(np.gradient(feet.points, axis=0)), length)
+    return Rail(
+        arc_lengths(feet.points) / length, feet, unit(np.gradient(feet.points, axis=0)), length
+    )
 
 
 def _even_parameters(directrix: Directrix, count: int) -> Floats:
     fine = np.linspace(*directrix.interval, 8 * count)
-    steps = np.linalg.norm(np.diff(directrix.point_at(fine), axis=0), axis=1)
-    arc = np.concatenate(([0.0], np.cumsum(steps)))
-    even: Floats = np.interp(np.linspace(0.0, arc[-1], count), arc, fine)
-    return even
+    arcs = arc_lengths(directrix.point_at(fine))
+    return points_at(fine[:, None], arcs, np.linspace(0.0, arcs[-1], count))[:, 0]
 
 
 def across_rail(rail: Rail, other: Rail, names: tuple[str, str]) -> Floats:
@@ -153,7 +152,7 @@ def end_between(upper: UpperFaces, p: Side, q: Side, at: int, name: str) -> Side
     """
     bridge = np.array([p.points[at], q.points[at]])
     width = float(np.linalg.norm(bridge[1] - bridge[0]))
-    length = float(np.linalg.norm(np.diff(p.points, axis=0), axis=1).sum())
+    length = polyline_length(p.points)
     if width <= settings.MEETING_PER_LENGTH * length:
         return None
     shares = np.linspace(0.0, 1.0, settings.END_POINTS)[:, None]

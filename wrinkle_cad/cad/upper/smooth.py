@@ -13,14 +13,14 @@ from scipy.interpolate import make_interp_spline
 from wrinkle_cad.cad.kernel.splines import make_curve
 from wrinkle_cad.cad.kernel.topology import make_compound
 from wrinkle_cad.cad.rail.directrix import Directrix
+from wrinkle_cad.strip.curve.polyline import arc_lengths
 
 Floats = NDArray[np.float64]
 
 
 def smooth_edge(points: Floats) -> TopoDS_Edge:
     """Returns a cubic B-spline edge through (k, 3) points in mm, k >= 4, C2 throughout."""
-    steps = np.linalg.norm(np.diff(points, axis=0), axis=1)
-    spline = make_interp_spline(np.concatenate(([0.0], np.cumsum(steps))), points, k=3)
+    spline = make_interp_spline(arc_lengths(points), points, k=3)
     knots, counts = np.unique(spline.t, return_counts=True)
     return BRepBuilderAPI_MakeEdge(make_curve(spline.c, knots, counts, 3)).Edge()
 

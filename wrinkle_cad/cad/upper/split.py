@@ -29,6 +29,8 @@ from wrinkle_cad.cad.kernel import topology as kernel
 from wrinkle_cad.cad.kernel.shape_index import ShapeIndex
 from wrinkle_cad.cad.kernel.splines import make_surface
 from wrinkle_cad.errors import CadError
+from wrinkle_cad.strip.curve.nearest import nearest_on_polyline
+from wrinkle_cad.strip.curve.polyline import arc_lengths
 
 from .drawn_edges import drawn_edges
 from .outline import Side, unit
@@ -139,8 +141,7 @@ def _ribbon(side: Side, height: float, overrun: tuple[float, float]) -> TopoDS_F
     for first, extra in ((True, overrun[0]), (False, overrun[1])):
         if extra > 0.0:
             points, normals = _extended(points, normals, first, extra)
-    steps = np.linalg.norm(np.diff(points, axis=0), axis=1)
-    arc = np.concatenate(([0.0], np.cumsum(steps)))
+    arc = arc_lengths(points)
     rows = np.stack((points - height * normals, points + height * normals), axis=1)
     spline = make_interp_spline(arc, rows.reshape(len(rows), 6), k=3)
     knots, counts = np.unique(spline.t, return_counts=True)
@@ -267,9 +268,5 @@ def edge_frame(edge: TopoDS_Edge, face: TopoDS_Face) -> tuple[Floats, Floats, Fl
 
 def position_on(line: Floats, point: Floats) -> tuple[float, float]:
     """Returns the distance in mm of a point from a polyline (k, 3), and where, in vertices."""
-    chord = np.diff(line, axis=0)
-    square = np.maximum((chord**2).sum(axis=1), np.finfo(np.float64).tiny)
-    share = np.clip(((point - line[:-1]) * chord).sum(axis=1) / square, 0.0, 1.0)
-    gaps = np.linalg.norm(line[:-1] + share[:, None] * chord - point, axis=1)
-    i = int(gaps.argmin())
-    return float(gaps[i]), i + float(share[i])
+    found = nearest_on_polyline(point[None], line)
+    return float(found.distance[0]), int(found.segment[0]) + float(found.share[0])

@@ -19,6 +19,7 @@ from wrinkle_cad import settings
 from wrinkle_cad.pattern.piece.flat import Indices
 from wrinkle_cad.pattern.piece.outline import closed_turns
 from wrinkle_cad.pattern.piece.piece import Floats
+from wrinkle_cad.strip.curve.polyline import arc_lengths, row_lengths, segment_gaps
 
 Curves = Literal["lines", "arcs", "splines"]
 
@@ -92,7 +93,7 @@ def _fitted(run: Floats, tolerance: float) -> _Run:
     from scipy.interpolate import make_interp_spline
 
     line = shapely.LineString(run)
-    walked = np.concatenate(([0.0], np.cumsum(np.linalg.norm(np.diff(run, axis=0), axis=1))))
+    walked = arc_lengths(run)
     dense = np.linspace(0.0, walked[-1], 8 * len(run))
     for stride in (8, 4, 2, 1):
         index = np.unique(np.append(np.arange(0, len(run), stride), len(run) - 1))
@@ -109,7 +110,7 @@ def _straight(run: Floats) -> _Run:
     """Returns a polyline as a cubic spline: each segment's controls stand at its thirds."""
     steps = np.diff(run, axis=0)
     thirds = run[:-1, None] + steps[:, None] * (np.array((1.0, 2.0, 3.0)) / 3.0)[:, None]
-    knots = np.cumsum(np.linalg.norm(steps, axis=1))
+    knots = arc_lengths(run)[1:]
     return _Run(
         np.vstack((run[:1], thirds.reshape(-1, 2))), np.repeat(knots[:-1], 3), float(knots[-1])
     )
@@ -156,11 +157,9 @@ def _arc_bulge(run: Floats, tolerance: float) -> float | None:
     centre = (x_mid**2 + rise**2 - half**2) / (2.0 * rise)
     radius = float(np.hypot(half, centre))
     # A segment is furthest from the circle at an end or where it is nearest to the centre.
-    steps = np.column_stack((np.diff(x), np.diff(y)))
     from_centre = np.column_stack((x, y - centre))
-    share = -np.sum(from_centre[:-1] * steps, axis=1) / np.sum(steps**2, axis=1)
-    feet = from_centre[:-1] + np.clip(share, 0.0, 1.0)[:, None] * steps
-    reach = np.linalg.norm(np.vstack((from_centre, feet)), axis=1)
+    nearest = segment_gaps((0.0, 0.0), from_centre[:-1], from_centre[1:])
+    reach = np.concatenate((row_lengths(from_centre), nearest))
     if float(np.abs(reach - radius).max()) > tolerance:
         return None
     # The arc bulges to the side of the middle vertex; no more than half a circle at once.

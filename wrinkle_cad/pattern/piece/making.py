@@ -9,6 +9,7 @@ import numpy as np
 import shapely
 
 from wrinkle_cad.errors import Finding, InputError
+from wrinkle_cad.strip.curve import polyline
 
 from .allowance import cut_outline
 from .flat import FlatStrip, flat_strip
@@ -185,10 +186,7 @@ def _rulings(strip: FlatStrip, chosen: PieceSettings) -> tuple[Floats, Floats]:
     keep = np.linalg.norm(lines[:, 1] - lines[:, 0], axis=1) >= chosen.tolerance
     if chosen.ruling_spacing > 0.0:
         middles = lines.mean(axis=1)
-        walked = np.concatenate(
-            ([0.0], np.cumsum(np.linalg.norm(np.diff(middles, axis=0), axis=1)))
-        )
-        slot = np.floor(walked / chosen.ruling_spacing)
+        slot = np.floor(polyline.arc_lengths(middles) / chosen.ruling_spacing)
         keep &= np.concatenate(([True], np.diff(slot) > 0.0))
     return frozen(lines[keep]), frozen(strip.fold[1:-1][keep])
 
@@ -202,8 +200,7 @@ def _drill_holes(strip: FlatStrip, cut: Outline, chosen: PieceSettings, name: st
         (strip.q_line, strip.q_arc, across),
     ):
         at = arcs[0] + along * (arcs[-1] - arcs[0])
-        points = np.column_stack([np.interp(at, arcs, line[:, axis]) for axis in (0, 1)])
-        holes += share[:, None] * points
+        holes += share[:, None] * polyline.points_at(line, arcs, at)
     region = shapely.Polygon(cut.points)
     for i in np.flatnonzero(~shapely.contains_xy(region, holes)):
         raise InputError(

@@ -11,6 +11,7 @@ import numpy as np
 
 from wrinkle_cad import settings
 from wrinkle_cad.errors import InputError
+from wrinkle_cad.strip.curve.polyline import segment_lengths
 
 from .options import END_SIDE, P_SIDE, Q_SIDE, START_SIDE
 from .piece import Bools, Floats, Ints, Outline, make_outline
@@ -61,7 +62,7 @@ def kept_vertices(line: Floats, tolerance: float) -> Bools:
         tolerance: mm.
     """
     kept = np.ones(len(line), dtype=np.bool_)
-    lengths = np.linalg.norm(np.diff(line, axis=0), axis=1)
+    lengths = segment_lengths(line)
     if not np.any(lengths < tolerance):
         return kept
     is_corner = np.zeros(len(line), dtype=np.bool_)

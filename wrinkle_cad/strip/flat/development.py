@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from wrinkle_cad.strip.compiled import compiled
 from wrinkle_cad.strip.curve.chebyshev import DEGREE, Cells, FloatArray, point_in_cell
+from wrinkle_cad.strip.curve.nearest import gap_from_segment
 
 IndexArray = NDArray[np.int64]
 Pair = tuple[float, float]
@@ -150,9 +151,7 @@ def _bulge(r0: float, r1: float, r2: float, angle1: float, angle2: float) -> flo
     """Distance of the middle one of three polar points from the segment between the others."""
     ux, uy = r2 * np.cos(angle1 + angle2) - r0, r2 * np.sin(angle1 + angle2)
     vx, vy = r1 * np.cos(angle1) - r0, r1 * np.sin(angle1)
-    square = ux * ux + uy * uy
-    share = 0.0 if square == 0.0 else min(1.0, max(0.0, (ux * vx + uy * vy) / square))
-    return float(np.hypot(vx - share * ux, vy - share * uy))
+    return float(gap_from_segment(ux, uy, vx, vy))
 
 
 @compiled
@@ -310,12 +309,10 @@ def thinned(points: FloatArray, segment: IndexArray, slack: float) -> NDArray[np
 def _farthest_between(points: FloatArray, start: int, end: int) -> tuple[float, int]:
     """Largest distance of the points between two others from the segment that joins these."""
     ux, uy = points[end, 0] - points[start, 0], points[end, 1] - points[start, 1]
-    square = ux * ux + uy * uy
     gap, farthest = 0.0, start
     for i in range(start + 1, end):
         vx, vy = points[i, 0] - points[start, 0], points[i, 1] - points[start, 1]
-        share = 0.0 if square == 0.0 else min(1.0, max(0.0, (ux * vx + uy * vy) / square))
-        distance = np.hypot(vx - share * ux, vy - share * uy)
+        distance = gap_from_segment(ux, uy, vx, vy)
         if distance > gap:
             gap, farthest = distance, i
     return gap, farthest

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from wrinkle_cad.errors import InputError
 from wrinkle_cad.settings import TURNED_BACK_PER_TOLERANCE, UNROLLING_ACCURACY
 from wrinkle_cad.strip.curve.chebyshev import FloatArray, PointAt, fit_cells
+from wrinkle_cad.strip.curve.polyline import arc_lengths
 from wrinkle_cad.strip.curve.sampling import Samples
 from wrinkle_cad.strip.triangulation import P_STEP, Triangulation
 
@@ -78,7 +79,7 @@ def unroll(triangulation: Triangulation) -> Unrolling:
     doubled = np.linalg.norm(np.cross(outward, along), axis=1)
     angles = np.arctan2(doubled, np.sum(outward * (strip.after - strip.apex), axis=1))
     p, q, _, _ = place_chain(triangulation.steps, angles, strip.radii, strip.start)
-    p_arc, q_arc = _chord_arc(triangulation.p), _chord_arc(triangulation.q)
+    p_arc, q_arc = arc_lengths(triangulation.p), arc_lengths(triangulation.q)
     return Unrolling(
         p=p,
         q=q,
@@ -193,11 +194,6 @@ class _Chain:
         self.after = np.where(choose, points_p[last_i], points_q[last_j])
         self.radii = np.linalg.norm(self.after - self.apex, axis=1)
         self.start = float(np.linalg.norm(points_p[0] - points_q[0]))
-
-
-def _chord_arc(points: FloatArray) -> FloatArray:
-    chords = np.linalg.norm(np.diff(points, axis=0), axis=1)
-    return np.concatenate(([0.0], np.cumsum(chords)))
 
 
 def _check_samples(name: str, samples: Samples, points: FloatArray) -> None:
