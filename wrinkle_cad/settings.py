@@ -169,7 +169,6 @@ TEST_SQUARE: Final = 100.0
 DXF_DECIMALS: Final = 6
 """Decimals of a coordinate in mm in a pattern file."""
 
-
 SPAN_SLACK: Final = 1e-9
 """A bridge whose end lies this share of the rail beyond a pattern piece still belongs to it."""
 
@@ -276,23 +275,9 @@ KNOT_HALVINGS: Final = 12
 PLANE_GAP: Final = 2e-8
 """mm; a curve and an apex within this of one plane make a planar face instead of a cone."""
 
-CHECK_ZERO: Final = 1e-6
-"""mm; a DXF file's segments shorter than this have no length, ends closer than this meet."""
-
-CHECK_NEAR_MISS: Final = 1.0
-"""mm; free ends closer than this were meant to meet."""
-
-CHECK_SMALLEST: Final = 2.0
-"""mm; a drawing smaller than this was probably written in another unit."""
-
-CHECK_LARGEST: Final = 20_000.0
-"""mm; a drawing larger than this was probably written in another unit."""
-
-
 def planarity_from(tolerance: float) -> float:
     """Returns the planarity in mm that fits a chord tolerance in mm."""
     return PLANARITY_PER_TOLERANCE * tolerance
-
 
 RAIL_POINTS: Final = 161
 """A rail is laid on the upper at so many points."""

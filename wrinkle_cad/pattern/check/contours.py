@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator, Sequence
 
 import numpy as np
 import shapely
 
-from wrinkle_cad import settings
 from wrinkle_cad.errors import Finding
 from wrinkle_cad.pattern.piece.piece import Floats
 
-from .reading import FileLine
+from . import limits
+from .entities import FileLine
+from .meetings import meeting_pairs
 
 
 def judge_contours(lines: Sequence[FileLine]) -> Iterator[Finding]:
@@ -24,88 +26,124 @@ def judge_contours(lines: Sequence[FileLine]) -> Iterator[Finding]:
     """
     for space in dict.fromkeys(line.space for line in lines):
         here = [line for line in lines if line.space == space and len(line.points) > 1]
-        rings = [_ring(line) for line in here if line.is_closed and len(line.points) > 2]
-        loose = [line.points for line in here if not line.is_closed]
-        joined, open_ends = _joined(loose)
+        rings, open_ends = closed_contours(here)
         yield from _gaps(open_ends)
-        rings += joined
         yield from _crossings(rings)
         yield from _overlaps([line for line in here if not line.is_curved])
+
+
+def closed_contours(lines: Sequence[FileLine]) -> tuple[list[Floats], Floats]:
+    """Returns the closed contours (k, 2) that lines make, first point repeated, and loose ends.
+
+    The loose ends, (l, 2), are those of lines that meet nothing.
+    """
+    rings = [_ring(line) for line in lines if line.is_closed and len(line.points) > 2]
+    loose = _meeting([line.points for line in lines if not line.is_closed and len(line.points) > 1])
+    distinct = {line.normalize().wkb: line for line in map(shapely.LineString, loose)}
+    merged = shapely.line_merge(shapely.MultiLineString(list(distinct.values())))
+    parts = [part for part in shapely.get_parts(merged) if part.length > limits.ZERO]
+    rings += [np.array(part.coords) for part in parts if part.is_closed]
+    ends = [part.coords[i] for part in parts if not part.is_closed for i in (0, -1)]
+    return rings, np.array(ends, dtype=np.float64).reshape(-1, 2)
 
 
 def _ring(line: FileLine) -> Floats:
     return np.vstack((line.points, line.points[:1]))
 
 
-def _joined(loose: Sequence[Floats]) -> tuple[list[Floats], Floats]:
-    """Returns the closed contours that loose lines make, and the ends that meet nothing, (k, 2)."""
-    grid = settings.CHECK_ZERO
-    snapped = {}
-    for points in loose:
-        rounded = np.round(points / grid) * grid
-        distinct = np.any(np.diff(rounded, axis=0) != 0.0, axis=1)
-        if distinct.any():
-            line = shapely.LineString(rounded[np.concatenate(([True], distinct))])
-            snapped[line.normalize().wkb] = line
-    merged = shapely.line_merge(shapely.MultiLineString(list(snapped.values())))
-    parts = [part for part in shapely.get_parts(merged) if not part.is_empty]
-    rings = [np.array(part.coords) for part in parts if part.is_closed]
-    ends = [part.coords[i] for part in parts if not part.is_closed for i in (0, -1)]
-    return rings, np.array(ends, dtype=np.float64).reshape(-1, 2)
+def _meeting(loose: Sequence[Floats]) -> list[Floats]:
+    """Returns the same lines with ends that meet within the limit made equal to the last bit."""
+    if not loose:
+        return []
+    # scipy loads in a fifth of a second, and most drawings have closed contours only.
+    from scipy.spatial import cKDTree
+
+    ends = np.vstack([points[[0, -1]] for points in loose])
+    places, index = np.unique(ends, axis=0, return_inverse=True)
+    near = cKDTree(places).query_pairs(limits.ZERO, output_type="ndarray")
+    first = np.arange(len(places))
+    for i, j in near[np.lexsort((near[:, 1], near[:, 0]))]:
+        first[j] = min(first[i], first[j])
+    joined = places[first[index.reshape(-1)]].reshape(-1, 2, 2)
+    made = []
+    for points, (start, stop) in zip(loose, joined, strict=True):
+        moved = np.array(points)
+        moved[0], moved[-1] = start, stop
+        made.append(moved)
+    return made
 
 
 def _gaps(ends: Floats) -> Iterator[Finding]:
     """Yields near misses (free ends that nearly meet), then what stays open."""
-    free = list(range(len(ends)))
-    while len(free) > 1:
-        first = free.pop(0)
-        distances = np.linalg.norm(ends[free] - ends[first], axis=1)
-        nearest = int(np.argmin(distances))
-        gap = float(distances[nearest])
-        if gap <= settings.CHECK_NEAR_MISS:
-            yield Finding(
-                "near-miss-gap",
-                "error",
-                f"contour - gap of {gap:.4g} mm at {_place(ends[first])} - ends must meet to "
-                f"{settings.CHECK_ZERO:g} mm - join them",
-            )
-            free.pop(nearest)
-        else:
-            yield _open(ends[first])
-    for last in free:
-        yield _open(ends[last])
+    if not len(ends):
+        return
+    from scipy.spatial import cKDTree
 
-
-def _open(end: Floats) -> Finding:
-    return Finding(
-        "open-contour",
-        "error",
-        f"contour - open at {_place(end)} - closed - close it, or move the line off the cut layer",
-    )
+    places, count = np.unique(ends, axis=0, return_counts=True)
+    for at in places[count > 1]:
+        yield _finding(
+            "branching-contour",
+            f"Three or more lines meet at {_place(at)}. A contour has one way on: remove a line, "
+            "or move it off the cut layer.",
+        )
+    single = places[count == 1]
+    free = np.ones(len(single), dtype=np.bool_)
+    if len(single) > 1:
+        distance, nearest = (np.asarray(row)[:, 1] for row in cKDTree(single).query(single, k=2))
+        for i in np.argsort(distance, kind="stable"):
+            j = nearest[i]
+            if distance[i] <= limits.NEAR_MISS and free[i] and free[j]:
+                free[[i, j]] = False
+                yield _finding(
+                    "near-miss-gap",
+                    f"A contour has a gap of {distance[i]:.4g} mm at {_place(single[i])}. Its ends "
+                    f"must meet to {limits.ZERO:g} mm: join them.",
+                )
+    for at in single[free]:
+        yield _finding(
+            "open-contour",
+            f"A contour is open at {_place(at)}. Close it, or move the line off the cut layer.",
+        )
 
 
 def _crossings(rings: Sequence[Floats]) -> Iterator[Finding]:
     contours = [shapely.LinearRing(ring) for ring in rings if len(ring) > 3]
     for contour in contours:
         if not contour.is_simple:
-            at = np.array(shapely.node(contour).geoms[0].coords[-1])
-            yield Finding(
+            yield _finding(
                 "self-intersection",
-                "error",
-                f"contour - crosses itself at {_place(at)} - simple - correct the outline",
+                f"A contour crosses itself at {_crossing(contour)}. Correct the outline.",
             )
     if len(contours) < 2:
         return
-    first, second = shapely.STRtree(contours).query(contours, predicate="intersects")
-    for i, j in zip(first, second, strict=True):
-        if i < j and not contours[i].equals(contours[j]):
-            meeting = shapely.intersection(contours[i], contours[j])
-            at = np.array(meeting.representative_point().coords[0])
-            yield Finding(
-                "contours-touch",
-                "error",
-                f"two contours - meet at {_place(at)} - apart - move one",
+    pairs = meeting_pairs(contours, distance=limits.HAIR)
+    for first, second in zip(*(np.take(contours, index) for index in pairs), strict=True):
+        if first.equals(second):
+            continue
+        if _is_double(first, second):
+            yield _finding(
+                "doubled-contour",
+                f"Two contours lie within {limits.HAIR:g} mm of each other all around, "
+                f"from {_place(np.array(first.coords[0]))}. Cut it once: remove one.",
             )
+        elif first.intersects(second):
+            meeting = shapely.intersection(first, second)
+            at = np.array(meeting.representative_point().coords[0])
+            yield _finding("contours-touch", f"Two contours meet at {_place(at)}. Move one away.")
+
+
+def _is_double(first: shapely.LinearRing, second: shapely.LinearRing) -> bool:
+    apart = np.abs(np.subtract(first.bounds, second.bounds)).max()
+    if apart > limits.HAIR:
+        return False
+    return bool(shapely.hausdorff_distance(first, second) <= limits.HAIR)
+
+
+def _crossing(contour: shapely.LinearRing) -> str:
+    """Returns where a ring crosses itself: GEOS tells one place without looking for all."""
+    told = re.search(r"\[(\S+) (\S+)\]", shapely.is_valid_reason(shapely.Polygon(contour.coords)))
+    place = tuple(map(float, told.groups())) if told else contour.coords[0]
+    return _place(np.array(place))
 
 
 def _overlaps(lines: Sequence[FileLine]) -> Iterator[Finding]:
@@ -118,22 +156,23 @@ def _overlaps(lines: Sequence[FileLine]) -> Iterator[Finding]:
     if not starts:
         return
     segments = np.stack((np.vstack(starts), np.vstack(stops)), axis=1)
-    lengths = np.linalg.norm(segments[:, 1] - segments[:, 0], axis=1)
-    segments = segments[lengths > settings.CHECK_ZERO]
+    along = segments[:, 1] - segments[:, 0]
+    segments = segments[np.hypot(along[:, 0], along[:, 1]) > limits.ZERO]
     drawn = shapely.linestrings(segments)
-    first, second = shapely.STRtree(drawn).query(drawn, predicate="intersects")
-    pairs = first < second
-    shared = shapely.length(shapely.intersection(drawn[first[pairs]], drawn[second[pairs]]))
-    for i in np.flatnonzero(shared > settings.CHECK_NEAR_MISS)[:1]:
-        at = segments[first[pairs][i], 0]
-        count = int(np.count_nonzero(shared > settings.CHECK_NEAR_MISS))
-        yield Finding(
+    first, second = meeting_pairs(drawn)
+    shared = shapely.length(shapely.intersection(drawn[first], drawn[second]))
+    longest = np.flatnonzero(shared > limits.NEAR_MISS)
+    if len(longest):
+        yield _finding(
             "overlap",
-            "error",
-            f"cut layer - {count} pairs of segments run over each other, first near {_place(at)} - "
-            "every line once - remove one",
+            f"{len(longest)} pairs of segments on the cut layers run over each other, first near "
+            f"{_place(segments[first[longest[0]], 0])}. Cut every line once: remove one.",
         )
 
 
 def _place(point: Floats) -> str:
     return f"({point[0]:.3f}, {point[1]:.3f}) mm"
+
+
+def _finding(code: str, message: str) -> Finding:
+    return Finding(code, "error", message)

@@ -15,18 +15,19 @@ from typing import Final
 
 import numpy as np
 
-from wrinkle_cad import settings
 from wrinkle_cad.errors import Finding, Severity
 
+from . import limits
 from .contours import judge_contours
+from .cut_layers import likely_cut_layers
+from .drawing_space import judge_space
+from .entities import FileLine, FileMark
+from .grouping import grouped
 from .pieces import judge_pieces
-from .reading import DxfContent, FileLine, FileMark, read_dxf, repeated_vertices
+from .reading import DxfContent, read_dxf, segment_lengths
 
 _UNIT_NAMES: Final = {0: "none", 1: "inches", 2: "feet", 4: "mm", 5: "cm", 6: "m", 13: "microns"}
 _MM: Final = 4
-_CUT_NAMES: Final = re.compile(
-    r"cut|knife|laser|contour|outline|boundary|kontur|schnitt|coupe|decoupe|taglio|corte", re.I
-)
 _SAYS_MM: Final = re.compile(r"\bmm\b|millimet|units:\s*metric", re.I)
 _UNUSED_LAYERS: Final = ("0", "defpoints")
 
@@ -38,7 +39,9 @@ class CheckReport:
     Attributes:
         name: of the file. ``release``: of DXF. ``format``: ``drawing`` or ``pieces``.
         cut_layers: the layers whose lines were taken as contours to cut.
-        contour_count: lines on them. ``findings``: sorted as they were looked for.
+        contour_count: lines on them.
+        findings: one of each kind, errors first, then warnings, then what is no fault.
+        counts: how many there are of each kind.
     """
 
     name: str
@@ -47,6 +50,7 @@ class CheckReport:
     cut_layers: tuple[str, ...]
     contour_count: int
     findings: tuple[Finding, ...]
+    counts: tuple[int, ...]
 
     @property
     def is_clean(self) -> bool:
@@ -59,50 +63,45 @@ def judge_dxf(path: Path, *, cut_layers: tuple[str, ...] = ()) -> CheckReport:
 
     Args:
         path: of the file.
-        cut_layers: names of the layers to be cut. If none are given: 1 and 11 in a file of
-            pieces, else the layers whose names say so, else every layer with a closed line.
+        cut_layers: names of the layers to be cut, in any case. If none are given: 1 and 11 in a
+            file of pieces, else the layers whose names have a word for cutting, else every layer
+            with a closed line.
 
     Raises:
         InputError: the file cannot be read, or is no DXF file.
     """
     content = read_dxf(path)
-    layers = cut_layers or _likely_cut_layers(content)
-    contours = [line for line in content.lines if line.layer in layers]
+    layers = cut_layers or likely_cut_layers(content)
+    chosen = frozenset(layer.lower() for layer in layers)
+    contours = [line for line in content.lines if line.layer.lower() in chosen]
     findings = [
-        *(_structure(problem) for problem in content.problems),
-        *_units(content),
-        *_scale(content),
-        *_texts(content),
+        *(_finding("structure", "error", problem) for problem in content.problems),
+        *(_finding("coordinates", "error", problem) for problem in content.unusable),
+        *judge_space(content, chosen),
         *_lines(content),
-        *_cut_layer_marks(content, layers),
+        *_cut_layer_marks(content, chosen),
         *judge_contours(contours),
     ]
     findings += judge_pieces(content) if content.is_blocks else _empty_layers(content)
+    findings += [*_units(content), *_scale(content), *_texts(content)]
     if not contours:
         findings.append(
-            _finding("nothing-to-cut", "error", "cut layer - no line on any - one - name the layer")
+            _finding(
+                "nothing-to-cut",
+                "error",
+                "There is no line on any cut layer. Name the layer that is to be cut.",
+            )
         )
+    groups = grouped(dict.fromkeys(findings))
     return CheckReport(
         name=path.name,
         release=content.release,
         format="pieces" if content.is_blocks else "drawing",
         cut_layers=layers,
         contour_count=len(contours),
-        findings=tuple(dict.fromkeys(findings)),
+        findings=tuple(finding for finding, _ in groups),
+        counts=tuple(count for _, count in groups),
     )
-
-
-def _likely_cut_layers(content: DxfContent) -> tuple[str, ...]:
-    if content.is_blocks:
-        return ("1", "11")
-    used = sorted({line.layer for line in content.lines})
-    named = tuple(layer for layer in used if _CUT_NAMES.search(layer))
-    closed = {line.layer for line in content.lines if line.is_closed}
-    return named or tuple(layer for layer in used if layer in closed) or tuple(used)
-
-
-def _structure(problem: str) -> Finding:
-    return _finding("structure", "error", f"DXF structure - {problem} - none - export it again")
 
 
 def _units(content: DxfContent) -> Iterator[Finding]:
@@ -112,16 +111,18 @@ def _units(content: DxfContent) -> Iterator[Finding]:
             yield _finding(
                 "units-unsaid",
                 "warning",
-                f"units - {content.release} has none and no text says mm - a text that does - add",
+                f"{content.release} has no unit, and no text says mm. Add a text that does.",
             )
     elif content.unit == 0:
-        yield _finding("units-unsaid", "warning", "units - $INSUNITS is 0 - 4 (mm) - set it")
+        yield _finding("units-unsaid", "warning", "$INSUNITS is 0, no unit. Set it to 4 (mm).")
     elif content.unit != _MM:
         name = _UNIT_NAMES.get(content.unit, f"number {content.unit}")
-        yield _finding("units-not-mm", "warning", f"units - {name} - mm - convert the drawing")
+        yield _finding("units-not-mm", "warning", f"The unit is {name}. Convert the drawing to mm.")
     elif content.is_metric is False:
         yield _finding(
-            "units-contradict", "warning", "units - mm, but $MEASUREMENT is 0 (inch) - 1 - set it"
+            "units-contradict",
+            "warning",
+            "The unit is mm, but $MEASUREMENT is 0 (inch). Set it to 1.",
         )
 
 
@@ -130,44 +131,55 @@ def _scale(content: DxfContent) -> Iterator[Finding]:
         return
     points = np.vstack([line.points for line in content.lines])
     size = float(np.ptp(points, axis=0).max())
-    if not settings.CHECK_SMALLEST <= size <= settings.CHECK_LARGEST:
+    if not limits.SMALLEST <= size <= limits.LARGEST:
         yield _finding(
             "scale",
             "warning",
-            f"drawing - {size:.6g} units large - {settings.CHECK_SMALLEST:g} to "
-            f"{settings.CHECK_LARGEST:g} mm - check its unit (25.4 is an inch)",
+            f"The drawing is {size:.6g} units large; patterns have {limits.SMALLEST:g} to "
+            f"{limits.LARGEST:g} mm. Check its unit (25.4 is an inch).",
         )
 
 
 def _texts(content: DxfContent) -> Iterator[Finding]:
-    named = [("layer name", name) for name in content.layers]
-    named += [("block name", name) for name in content.blocks]
-    named += [(f"text on layer {mark.layer}", mark.text) for mark in content.marks if mark.text]
+    named = [("Layer name", name) for name in content.layers]
+    named += [("Block name", name) for name in content.blocks]
+    named += [(f"Text on layer {mark.layer}", mark.text) for mark in content.marks if mark.text]
     for what, text in named:
         if not text.isascii() or re.search(r"\\[Uu]\+[0-9A-Fa-f]{4}", text):
             yield _finding(
-                "non-ascii", "warning", f"{what} {text!a} - not ASCII - 7-bit ASCII - rename"
+                "non-ascii",
+                "warning",
+                f"{what} {text[:60]!a} is not 7-bit ASCII, which is all that many cutters read. "
+                "Rename it.",
             )
 
 
 def _lines(content: DxfContent) -> Iterator[Finding]:
     for line in content.lines:
-        short = np.flatnonzero(repeated_vertices(line))
+        lengths = segment_lengths(line)
+        short = np.flatnonzero(lengths < limits.ZERO)
         if len(short) or len(line.points) < 2:
-            at = line.points[short[0] if len(short) else 0]
             yield _finding(
                 "zero-length",
                 "error",
-                f"{line.kind} on layer {line.layer} - segment without length at {_place(at)} - "
-                f"{settings.CHECK_ZERO:g} mm - remove the repeated vertex",
+                f"{line.kind} on layer {line.layer} has a segment without length at "
+                f"{_place(line.points[short[0] if len(short) else 0])}. Remove the repeat.",
+            )
+        elif not line.is_curved and len(lengths) and lengths.min() < limits.SHORTEST:
+            at = line.points[int(np.argmin(lengths))]
+            yield _finding(
+                "micro-segment",
+                "warning",
+                f"{line.kind} on layer {line.layer} has a segment of {lengths.min():.2g} mm at "
+                f"{_place(at)}. Machines stutter below {limits.SHORTEST:g} mm: simplify.",
             )
     for key, count in Counter(map(_likeness, content.lines)).items():
         if count > 1:
             yield _finding(
                 "duplicate",
                 "error",
-                f"layer {key[1]} - the same line {count} times from {_place(key[2][0])} - once - "
-                "remove the others",
+                f"Layer {key[1]} has the same line {count} times from {_place(key[2][0])}. Keep "
+                "one.",
             )
 
 
@@ -184,30 +196,34 @@ def _likeness(line: FileLine) -> tuple[str, str, tuple[tuple[float, float], ...]
     return line.space, line.layer, tuple(min(forward, backward))
 
 
-def _cut_layer_marks(content: DxfContent, layers: tuple[str, ...]) -> Iterator[Finding]:
+def _cut_layer_marks(content: DxfContent, layers: frozenset[str]) -> Iterator[Finding]:
     for mark in content.marks:
-        if mark.layer not in layers or (content.is_blocks and mark.kind == "TEXT"):
+        is_system_text = content.is_blocks and mark.kind in ("TEXT", "ATTDEF")
+        if mark.layer.lower() not in layers or is_system_text:
             continue
         code = "text-on-cut" if mark.text else "mark-on-cut"
         yield _finding(
             code,
             "error",
-            f"{mark.kind} on cut layer {mark.layer} - at {_place(mark.position)} - contours only - "
-            "move it to a layer of its own",
+            f"{mark.kind} stands on cut layer {mark.layer} at {_place(mark.position)}. Only "
+            "contours may: move it to a layer of its own.",
         )
     for line in content.lines:
-        if line.layer in layers and line.height > settings.CHECK_ZERO:
+        if line.layer.lower() not in layers:
+            continue
+        if line.height > limits.ZERO:
             yield _finding(
                 "not-flat",
                 "error",
-                f"{line.kind} on cut layer {line.layer} - {line.height:g} mm off the plane - 0 - "
-                "flatten it",
+                f"{line.kind} on cut layer {line.layer} lies {line.height:g} mm off the plane. "
+                "Flatten it.",
             )
-        if line.layer in layers and line.kind in ("SPLINE", "ELLIPSE"):
+        if line.kind in ("SPLINE", "ELLIPSE"):
             yield _finding(
                 "spline",
                 "info",
-                f"cut layer {line.layer} - {line.kind} - some cutters ignore it - export lines",
+                f"{line.kind} on cut layer {line.layer}: some cutters ignore it. Export lines "
+                "where yours does.",
             )
 
 
@@ -215,9 +231,10 @@ def _empty_layers(content: DxfContent) -> Iterator[Finding]:
     drawn: tuple[FileLine | FileMark, ...] = (*content.lines, *content.marks)
     used = {item.layer.lower() for item in drawn}
     used |= {insert.layer.lower() for insert in content.inserts}
+    used |= {layer.lower() for layer in content.paper_layers}
     for layer in content.layers:
         if layer.lower() not in used and layer.lower() not in _UNUSED_LAYERS:
-            yield _finding("empty-layer", "warning", f"layer {layer} - empty - used - remove it")
+            yield _finding("empty-layer", "warning", f"Layer {layer} is empty. Remove it.")
 
 
 def _place(point: tuple[float, float] | np.ndarray) -> str:

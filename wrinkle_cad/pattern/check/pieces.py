@@ -8,10 +8,12 @@ from typing import Final
 
 import numpy as np
 
-from wrinkle_cad.errors import Finding
+from wrinkle_cad.errors import Finding, Severity
 from wrinkle_cad.pattern.formats.aama import CURVE_POINTS, TURN_POINTS, VALIDATION
 
-from .reading import ENTITIES, DxfContent, FileLine, FileMark
+from .contours import closed_contours
+from .entities import FileLine, FileMark
+from .reading import ENTITIES, DxfContent
 
 _STYLE_KEYS: Final = (
     "Style Name:", "Creation Date:", "Creation Time:", "Author:", "Sample Size:", "Units:",
@@ -19,42 +21,77 @@ _STYLE_KEYS: Final = (
 )  # fmt: skip
 _VERSION_KEYS: Final = ("ASTM/D13Proposal", "ANSI/AAMA")
 _PIECE_KEYS: Final = ("Piece Name:", "Size:", "Quantity:")
+_NEEDED_KEYS: Final = ("Piece Name:", "Size:")
+"""Some readers refuse a piece without these; the others are read where they stand."""
+
+
+_OUTLINES: Final = ("1", "11", "14")
 
 
 def judge_pieces(content: DxfContent) -> Iterator[Finding]:
     """Yields what breaks the rules of a file of pattern pieces."""
     style = [mark.text for mark in content.marks if mark.space == ENTITIES and mark.layer == "1"]
     for key in _missing(_STYLE_KEYS, style):
-        yield _missing_key(key, "style text on layer 1")
+        yield _missing_key(key, "The style's texts on layer 1 have")
     if not any(_starts(text, key) for text in style for key in _VERSION_KEYS):
-        yield _missing_key("ASTM/D13Proposal or ANSI/AAMA version", "style text on layer 1")
+        yield _missing_key("ASTM/D13Proposal or ANSI/AAMA", "The style's texts on layer 1 have")
     if any(_starts(text, "Units:") and "english" in text.lower() for text in style):
-        yield Finding(
-            "units-not-mm", "warning", "units - ENGLISH (inches) - METRIC (mm) - convert the file"
+        yield _broken(
+            "units-not-mm", "The units are ENGLISH (inches). Convert the file to METRIC.", "warning"
         )
     drawn: tuple[FileLine | FileMark, ...] = (*content.lines, *content.marks)
     count = sum(item.layer == "0" for item in drawn)
     if count:
-        yield _broken("layer-0", f"layer 0 - {count} entities - nothing on it - move them")
+        yield _broken(
+            "layer-0", f"Layer 0 holds {count} entities; the standard leaves it empty.", "info"
+        )
     for block in content.blocks:
         lines = [line for line in content.lines if line.space == block]
         marks = [mark for mark in content.marks if mark.space == block]
-        yield from _piece(block, lines, marks)
-        yield from _inserted(block, content)
+        if _is_piece(marks):
+            yield from _piece(block, lines, marks)
+            yield from _inserted(block, content)
+        else:
+            yield _broken(
+                "no-piece",
+                f"Block {block} is no piece: it has neither a name nor turn points. Gerber refuses "
+                "other blocks: remove it.",
+                "warning",
+            )
+
+
+def _is_piece(marks: Sequence[FileMark]) -> bool:
+    """Whether a block is meant as a piece; a frame is not."""
+    return any(
+        (mark.layer == "1" and any(_starts(mark.text, key) for key in _PIECE_KEYS))
+        or (mark.kind == "POINT" and mark.layer in (TURN_POINTS, CURVE_POINTS))
+        for mark in marks
+    )
 
 
 def _piece(block: str, lines: Sequence[FileLine], marks: Sequence[FileMark]) -> Iterator[Finding]:
     texts = [mark.text for mark in marks if mark.layer == "1" and mark.text]
     for key in _missing(_PIECE_KEYS, texts):
-        yield _missing_key(key, f"piece {block}, text on layer 1")
-    if not any(line.layer == "1" and line.is_closed for line in lines):
+        yield _missing_key(key, f"The texts of piece {block} on layer 1 have")
+    boundary = [line for line in lines if line.layer == "1"]
+    rings, _ = closed_contours(boundary)
+    if not rings:
         yield _broken(
-            "no-boundary", f"piece {block} - no closed polyline on layer 1 - one - add it"
+            "no-boundary", f"Piece {block} has no closed boundary on layer 1. Close or add it."
+        )
+    elif not any(line.is_closed for line in boundary):
+        yield _broken(
+            "split-boundary",
+            f"The boundary of piece {block} is {len(boundary)} open polylines end to end, as "
+            "AccuMark writes it. Readers of one closed polyline need them joined.",
+            "info",
         )
     for line in lines:
         if line.kind in ("LWPOLYLINE", "SPLINE", "ARC", "ELLIPSE"):
             yield _broken(
-                "not-polyline", f"piece {block} - {line.kind} - POLYLINE - export as lines"
+                "not-polyline",
+                f"Piece {block} has a {line.kind} on layer {line.layer}; pattern CAD reads "
+                "POLYLINE. Export it as lines.",
             )
     yield from _points(block, lines, marks)
     for layer, copy in VALIDATION.items():
@@ -62,8 +99,8 @@ def _piece(block: str, lines: Sequence[FileLine], marks: Sequence[FileMark]) -> 
         if 0 < stated[1] < stated[0]:
             yield _broken(
                 "validation-curve",
-                f"piece {block} - {stated[1]} vertices on layer {copy} - at least the {stated[0]} "
-                f"of layer {layer} - export it again",
+                f"Piece {block} has {stated[1]} vertices on layer {copy}, fewer than the "
+                f"{stated[0]} of layer {layer} that they validate. Export it again.",
             )
 
 
@@ -72,35 +109,55 @@ def _points(block: str, lines: Sequence[FileLine], marks: Sequence[FileMark]) ->
     points = [m for m in marks if m.kind == "POINT" and m.layer in (TURN_POINTS, CURVE_POINTS)]
     drawn = [line for line in lines if line.layer in VALIDATION and line.kind == "POLYLINE"]
     vertex_count = sum(line.vertex_count for line in drawn)
-    if len(points) != vertex_count:
+    found = Counter(place for point in points for place in _places(np.array([point.position])))
+    wanted = Counter(place for line in drawn for place in _places(line.points))
+    shared = _shared_ends(drawn)
+    # Where polylines meet end to end some programs give the joint one point, others two.
+    if not vertex_count - shared.total() <= len(points) <= vertex_count:
         yield _broken(
             "point-count",
-            f"piece {block} - {len(points)} turn and curve points - {vertex_count}, as many as "
-            "vertices on layers 1, 8, 11 and 14 - export it again",
+            f"Piece {block} has {len(points)} turn and curve points for the {vertex_count} "
+            "vertices on layers 1, 8, 11 and 14. Export it again.",
         )
-        return
-    wanted = Counter(place for line in drawn for place in _places(line.points))
-    found = Counter(place for point in points for place in _places(np.array([point.position])))
-    if wanted != found:
+    elif (found - wanted) or (wanted - found - shared):
+        beside = (found - wanted).total()
         yield _broken(
             "point-place",
-            f"piece {block} - {(found - wanted).total()} turn or curve points beside the lines - "
-            "on their vertices - export it again",
+            f"Piece {block} has {beside} turn or curve points beside its lines. They stand on the "
+            "vertices: export it again.",
         )
+
+
+def _shared_ends(lines: Sequence[FileLine]) -> Counter[tuple[float, float]]:
+    """Returns how often each place is the end of one more open line of the same outline."""
+    shared: Counter[tuple[float, float]] = Counter()
+    for layer in _OUTLINES:
+        ends = Counter(
+            place
+            for line in lines
+            if line.layer == layer and not line.is_closed
+            for place in _places(line.points[[0, -1]])
+        )
+        shared += ends - Counter(ends.keys())
+    return shared
 
 
 def _inserted(block: str, content: DxfContent) -> Iterator[Finding]:
     inserts = [insert for insert in content.inserts if insert.block == block]
     if len(inserts) != 1:
-        yield _broken(
-            "insert", f"piece {block} - inserted {len(inserts)} times - once - insert it once"
-        )
+        yield _broken("insert", f"Piece {block} is inserted {len(inserts)} times. Insert it once.")
     for insert in inserts:
-        if insert.layer != "1" or insert.position != (0.0, 0.0, 0.0) or not insert.is_plain:
+        if insert.position != (0.0, 0.0, 0.0) or not insert.is_plain:
             yield _broken(
                 "insert",
-                f"piece {block} - inserted on layer {insert.layer} at {insert.position} - on layer "
-                "1 at the origin, neither turned nor scaled - insert it there",
+                f"Piece {block} is inserted at {insert.position}. Insert it at the origin, neither "
+                "turned nor scaled.",
+            )
+        elif insert.layer != "1":
+            yield _broken(
+                "insert-layer",
+                f"Piece {block} is inserted on layer {insert.layer}; the standard has layer 1.",
+                "info",
             )
 
 
@@ -121,8 +178,9 @@ def _starts(text: str, key: str) -> bool:
 
 
 def _missing_key(key: str, where: str) -> Finding:
-    return Finding("missing-key", "error", f"{where} - no {key!r} - one - add it")
+    is_needed = key in _NEEDED_KEYS
+    return _broken("missing-key", f"{where} no {key!r}. Add it.", "error" if is_needed else "info")
 
 
-def _broken(code: str, message: str) -> Finding:
-    return Finding(code, "error", message)
+def _broken(code: str, message: str, severity: Severity = "error") -> Finding:
+    return Finding(code, severity, message)

@@ -1,0 +1,196 @@
+"""What is no DXF, or a hostile one, ends in one sentence, quickly and in little memory."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+import time
+
+import ezdxf
+import pytest
+
+from tests.pattern import strips
+from wrinkle_cad.errors import InputError
+from wrinkle_cad.pattern.check import limits
+from wrinkle_cad.pattern.check.judging import judge_dxf
+from wrinkle_cad.pattern.formats.dxf import dxf_bytes
+from wrinkle_cad.pattern.piece.making import make_pieces
+
+SQUARE = ((0, 0), (100, 0), (100, 50), (0, 50))
+CUT = {"layer": "CUT"}
+
+
+def refusal(path):
+    """The one sentence that a file is refused with, None if it is judged."""
+    began = time.process_time()
+    try:
+        judge_dxf(path)
+        message = None
+    except InputError as error:
+        message = str(error)
+        assert message.startswith(path.name)
+        assert message.endswith(".")
+        assert "\n" not in message
+    assert time.process_time() - began < 5.0
+    return message
+
+
+@pytest.mark.parametrize(
+    ("name", "content"),
+    {
+        "empty": b"",
+        "text": b"this is no drawing\n" * 30,
+        "binary": bytes(range(256)) * 20,
+        "step": b"ISO-10303-21;\nHEADER;\nENDSEC;\nEND-ISO-10303-21;\n",
+        "noise with a section": b"SECTION" + bytes(range(256)) * 2000,
+        "binary mark alone": b"AutoCAD Binary DXF\r\n\x1a\x00SECTION",
+    }.items(),
+)
+def test_what_is_no_dxf_is_one_sentence(name, content, tmp_path):
+    path = tmp_path / "broken.dxf"
+    path.write_bytes(content)
+    assert refusal(path)
+
+
+def test_a_missing_file_and_a_folder_are_refused(tmp_path):
+    assert refusal(tmp_path / "none.dxf")
+    assert refusal(tmp_path)
+
+
+def test_a_pipe_is_refused_without_waiting_for_a_writer(tmp_path):
+    path = tmp_path / "pipe.dxf"
+    os.mkfifo(path)
+    assert "regular file" in refusal(path)
+
+
+def test_a_file_without_end_is_refused_unread(tmp_path):
+    path = tmp_path / "huge.dxf"
+    with path.open("wb") as stream:
+        stream.truncate(2**40)
+    assert "MiB" in refusal(path)
+
+
+@pytest.fixture
+def document():
+    made = ezdxf.new("R2000", units=4)
+    made.layers.add("CUT")
+    return made
+
+
+def saved(document, tmp_path):
+    path = tmp_path / "made.dxf"
+    document.saveas(path)
+    return path
+
+
+def test_blocks_that_insert_each_other_are_refused(document, tmp_path):
+    document.blocks.new("A").add_blockref("B", (0, 0))
+    document.blocks.new("B").add_blockref("A", (0, 0))
+    document.modelspace().add_blockref("A", (0, 0))
+    assert "contains itself" in refusal(saved(document, tmp_path))
+
+
+def test_blocks_that_double_forty_times_are_refused(document, tmp_path):
+    document.blocks.new("B0").add_line((0, 0), (1, 1), dxfattribs=CUT)
+    for i in range(1, 40):
+        block = document.blocks.new(f"B{i}")
+        block.add_blockref(f"B{i - 1}", (0, 0))
+        block.add_blockref(f"B{i - 1}", (1, 0))
+    document.modelspace().add_blockref("B39", (0, 0))
+    assert "more than 50,000" in refusal(saved(document, tmp_path))
+
+
+@pytest.mark.parametrize("depth", [150, 600])
+def test_deeply_nested_blocks_are_refused(depth, document, tmp_path):
+    document.blocks.new("B0").add_line((0, 0), (1, 1), dxfattribs=CUT)
+    for i in range(1, depth):
+        document.blocks.new(f"B{i}").add_blockref(f"B{i - 1}", (0, 0))
+    document.modelspace().add_blockref(f"B{depth - 1}", (0, 0))
+    # ezdxf itself gives up on the deeper one.
+    assert refusal(saved(document, tmp_path))
+
+
+@pytest.mark.parametrize("empty", [False, True])
+def test_a_block_inserted_by_the_million_is_refused(empty, document, tmp_path):
+    block = document.blocks.new("A")
+    if not empty:
+        block.add_lwpolyline(SQUARE, close=True, dxfattribs=CUT)
+    insert = document.modelspace().add_blockref("A", (0, 0))
+    insert.dxf.row_count, insert.dxf.column_count = 30_000, 30_000
+    assert "more than 50,000" in refusal(saved(document, tmp_path))
+
+
+@pytest.mark.parametrize("number", ["nan", "inf", "-1e300", "1e308"])
+def test_numbers_that_are_none_are_named_and_the_rest_is_judged(number, document, tmp_path):
+    space = document.modelspace()
+    space.add_lwpolyline(SQUARE, close=True, dxfattribs=CUT)
+    bad = 77.125
+    space.add_lwpolyline(((200, 0), (bad, 10), (250, 10)), close=True, dxfattribs=CUT)
+    space.add_line((300, 0), (bad, 9), dxfattribs=CUT)
+    space.add_circle((bad, 0), 5, dxfattribs=CUT)
+    space.add_circle((400, 0), bad, dxfattribs=CUT)
+    space.add_lwpolyline(
+        ((500, 0, bad), (600, 0, 0), (550, 30, 0)), "xyb", close=True, dxfattribs=CUT
+    )
+    space.add_spline([(bad, 0), (1, 1), (2, 5), (3, 0)], dxfattribs=CUT)
+    space.add_text("MM", dxfattribs={"layer": "TEXT"}).set_placement((bad, 0))
+    path = saved(document, tmp_path)
+    path.write_text(path.read_text().replace("77.125", number))
+    began = time.process_time()
+    report = judge_dxf(path)
+    assert time.process_time() - began < 5.0
+    counts = {finding.code: n for finding, n in zip(report.findings, report.counts, strict=True)}
+    assert counts["coordinates"] >= 5
+    assert report.contour_count >= 1
+    assert not report.is_clean
+
+
+def test_a_thousand_lines_on_top_of_each_other_are_judged_in_time(document, tmp_path):
+    for i in range(1500):
+        x = 1e-3 * i
+        document.modelspace().add_line((x, 0), (x + 500, 0), dxfattribs=CUT)
+    path = saved(document, tmp_path)
+    began = time.process_time()
+    assert "overlap" in [finding.code for finding in judge_dxf(path).findings]
+    assert time.process_time() - began < 5.0
+
+
+def test_a_hostile_file_is_refused_in_little_memory(document, tmp_path):
+    document.blocks.new("B0").add_line((0, 0), (1, 1), dxfattribs=CUT)
+    for i in range(1, 60):
+        block = document.blocks.new(f"B{i}")
+        for x in range(8):
+            block.add_blockref(f"B{i - 1}", (x, 0))
+    document.modelspace().add_blockref("B59", (0, 0))
+    path = saved(document, tmp_path)
+    script = (
+        "import resource, sys; from pathlib import Path\n"
+        "from wrinkle_cad.pattern.check.judging import judge_dxf\n"
+        "try:\n    judge_dxf(Path(sys.argv[1]))\nexcept ValueError:\n"
+        "    print(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss)\n"
+    )
+    done = subprocess.run(
+        [sys.executable, "-c", script, str(path)], capture_output=True, text=True, check=True
+    )
+    assert 0 < int(done.stdout) < 500 * 1024
+
+
+def test_any_prefix_of_a_sound_file_is_judged_or_refused(tmp_path):
+    whole = dxf_bytes(make_pieces(*strips.rectangle(), name="part"), profile="astm")
+    path = tmp_path / "cut.dxf"
+    for end in range(50, len(whole), len(whole) // 12):
+        path.write_bytes(whole[:end])
+        if refusal(path) is None:
+            assert "structure" in [finding.code for finding in judge_dxf(path).findings]
+
+
+def test_the_limit_lets_a_binary_file_through(document, tmp_path):
+    document.modelspace().add_lwpolyline(SQUARE, close=True, dxfattribs=CUT)
+    path = tmp_path / "binary.dxf"
+    document.saveas(path, fmt="bin")
+    assert path.stat().st_size < limits.FILE_LIMIT
+    assert judge_dxf(path).is_clean
+    content = path.read_bytes()
+    path.write_bytes(content[: len(content) // 2])
+    assert refusal(path)

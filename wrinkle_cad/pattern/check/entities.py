@@ -1,0 +1,171 @@
+"""One DXF entity as a plain line or mark."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+from ezdxf.entities import DXFEntity
+from ezdxf.path import make_path
+
+from wrinkle_cad import settings
+from wrinkle_cad.pattern.piece.piece import Floats, frozen
+
+from . import limits
+
+LINES: Final = frozenset({"LINE", "LWPOLYLINE", "POLYLINE", "ARC", "CIRCLE", "ELLIPSE", "SPLINE"})
+_TEXTS: Final = frozenset({"TEXT", "MTEXT", "ATTRIB", "ATTDEF"})
+_SAGITTA: Final = 0.01
+"""mm; how finely curves are taken apart."""
+_SAGITTA_PER_SIZE: Final = 1e-4
+"""... but no finer than this share of a curve's size: files may hold arcs as large as the earth."""
+_SPLINE_POINTS: Final = 20_000
+"""A spline is looked at in so many points at most, but in no fewer than it has controls."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class FileLine:
+    """A line of any kind: (k, 2) points; a closed one does not repeat its first point.
+
+    Attributes:
+        height: largest distance from the plane z = 0.
+        vertex_count: as the file states them, not those of a curve taken apart.
+        stated: (s, 2) the vertices that the file states; none for arcs and splines.
+    """
+
+    space: str
+    layer: str
+    kind: str
+    points: Floats
+    is_closed: bool
+    vertex_count: int
+    height: float
+    is_curved: bool
+    stated: Floats
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class FileMark:
+    """Anything that is no line: a text, a point, a hatch. ``text`` is empty for the others."""
+
+    space: str
+    layer: str
+    kind: str
+    position: tuple[float, float]
+    text: str
+
+
+def line_of(entity: DXFEntity, space: str) -> FileLine | None:
+    """Returns an entity as a line, None if it is no line or has no place in the plane."""
+    kind = entity.dxftype()
+    if kind not in LINES or not _has_place(entity):
+        return None
+    if kind == "POLYLINE" and not (entity.is_2d_polyline or entity.is_3d_polyline):
+        return None
+    stated = _stated_vertices(entity)
+    is_curved = kind in ("ARC", "CIRCLE", "ELLIPSE", "SPLINE") or bool(
+        getattr(entity, "has_arc", False)
+    )
+    try:
+        points = _along(entity, stated) if is_curved else stated
+    # Bulges and axes that contradict each other: ezdxf has no one error for them.
+    except (ArithmeticError, ValueError, RuntimeError, LookupError, TypeError):
+        return None
+    if not len(points) or not _is_usable(points) or not _is_usable(stated):
+        return None
+    is_closed = bool(getattr(entity, "is_closed", False)) and kind != "SPLINE"
+    if is_curved:
+        meets = len(points) > 2 and math.dist(points[0], points[-1]) < limits.ZERO
+        is_closed = meets and (is_closed or kind not in ("LWPOLYLINE", "POLYLINE"))
+        points = points[:-1] if is_closed else points
+    return FileLine(
+        space=space,
+        layer=entity.dxf.layer,
+        kind=kind,
+        points=frozen(points[:, :2]),
+        is_closed=is_closed,
+        vertex_count=len(stated) or len(points),
+        height=float(np.abs(points[:, 2]).max()),
+        is_curved=is_curved,
+        stated=frozen(stated[:, :2]),
+    )
+
+
+def mark_of(entity: DXFEntity, space: str) -> FileMark | None:
+    """Returns an entity as a mark, None if it is a line, or its place is no number."""
+    kind = entity.dxftype()
+    if kind in LINES and kind != "POLYLINE":
+        return None
+    text = ""
+    if kind in _TEXTS:
+        text = entity.plain_text() if kind == "MTEXT" else str(entity.dxf.get("text", ""))
+    named = [name for name in ("location", "insert") if entity.dxf.hasattr(name)]
+    place = entity.dxf.get(named[0]) if named else (0.0, 0.0)
+    position = (float(place[0]), float(place[1]))
+    if not _is_usable(np.array(position)):
+        return None
+    return FileMark(space, entity.dxf.layer, kind, position, text)
+
+
+def _has_place(entity: DXFEntity) -> bool:
+    """Whether what ezdxf would take apart has finite numbers: it may not come back from others."""
+    names = (
+        "center", "radius", "start_angle", "end_angle", "major_axis", "ratio", "start_param",
+        "end_param", "extrusion",
+    )  # fmt: skip
+    numbers: list[float] = []
+    for name in names:
+        if entity.dxf.is_supported(name):
+            value = entity.dxf.get_default(name)
+            numbers += [value] if isinstance(value, int | float) else list(value or ())
+    if entity.dxftype() == "SPLINE":
+        numbers += np.asarray(entity.control_points, dtype=np.float64).reshape(-1).tolist()
+        numbers += [*entity.knots, *entity.weights]
+        numbers += np.asarray(entity.fit_points, dtype=np.float64).reshape(-1).tolist()
+    return _is_usable(np.array(numbers, dtype=np.float64))
+
+
+def _is_usable(numbers: Floats) -> bool:
+    # Not >: no comparison with NaN holds.
+    return bool(np.all(np.abs(numbers) <= settings.LARGEST_COORDINATE))
+
+
+def _along(entity: DXFEntity, stated: Floats) -> Floats:
+    """Returns points (k, 3) along a curve, its first point repeated where it is closed."""
+    if entity.dxftype() == "SPLINE":
+        return _along_spline(entity)
+    if not _is_usable(stated):
+        return stated
+    path = make_path(entity)
+    size = max((path.start.distance(point) for point in path.control_vertices()), default=0.0)
+    sagitta = max(_SAGITTA, _SAGITTA_PER_SIZE * size)
+    points = np.array([tuple(point) for point in path.flattening(sagitta)])
+    return points.reshape(-1, 3)
+
+
+def _along_spline(entity: DXFEntity) -> Floats:
+    """Returns points (k, 3) along a spline's own domain, which a periodic one's knots exceed."""
+    if not len(entity.control_points) and not len(entity.fit_points):
+        return np.zeros((0, 3))
+    spline = entity.construction_tool()
+    knots = spline.knots()
+    controls = len(spline.control_points)
+    low, high = knots[spline.degree], knots[controls]
+    each = max(1, min(32, _SPLINE_POINTS // controls))
+    parameters = np.linspace(low, high, each * controls + 1)
+    return np.array([tuple(point) for point in spline.points(parameters.tolist())])
+
+
+def _stated_vertices(entity: DXFEntity) -> Floats:
+    kind = entity.dxftype()
+    if kind == "LINE":
+        rows = [tuple(entity.dxf.start), tuple(entity.dxf.end)]
+    elif kind == "LWPOLYLINE":
+        rows = [tuple(point) for point in entity.vertices_in_wcs()]
+    elif kind == "POLYLINE":
+        rows = [tuple(point) for point in entity.points_in_wcs()]
+    else:
+        rows = []
+    return np.array(rows, dtype=np.float64).reshape(-1, 3)

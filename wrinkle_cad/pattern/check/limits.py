@@ -1,0 +1,36 @@
+"""What the check calls short, near, large and too much."""
+
+from __future__ import annotations
+
+from typing import Final
+
+ZERO: Final = 1e-6
+"""mm; a DXF file's segments shorter than this have no length, ends closer than this meet."""
+
+HAIR: Final = 0.1
+"""mm; contours that lie closer than this to each other all around are one, drawn twice; laser
+software merges points at the same distance."""
+
+SHORTEST: Final = 0.01
+"""mm; shorter segments make a machine stutter."""
+
+FILE_LIMIT: Final = 32 * 2**20
+"""Bytes; the largest DXF file that is judged: reading takes some 35 times as much memory."""
+
+MOST_UNFOLDED: Final = 50_000
+"""Lines and marks that a drawing's blocks may make where they are inserted."""
+
+DEEPEST_BLOCKS: Final = 100
+"""So many blocks may be nested in each other."""
+
+MOST_PAIRS: Final = 20_000
+"""Pairs of lines that meet, or of contours, are looked at until there are so many."""
+
+NEAR_MISS: Final = 1.0
+"""mm; free ends closer than this were meant to meet."""
+
+SMALLEST: Final = 2.0
+"""mm; a drawing smaller than this was probably written in another unit."""
+
+LARGEST: Final = 20_000.0
+"""mm; a drawing larger than this was probably written in another unit."""
