@@ -77,7 +77,7 @@ def _polygon_face(corners: np.ndarray[Any, np.dtype[np.float64]]) -> TopoDS_Face
     if len(corners) < 3:
         raise InputError(f"outline - {len(corners)} corners - at least 3 are needed")
     x, y = corners.T
-    if np.dot(x, np.roll(y, -1)) < np.dot(y, np.roll(x, -1)):
+    if (x * np.roll(y, -1)).sum() < (y * np.roll(x, -1)).sum():
         corners = corners[::-1]
     # The kernel's own check takes 16 s for 4,000 corners.
     if not Polygon(corners).is_valid:

@@ -8,6 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from wrinkle_cad.settings import STEEPEST_HALF_FOLD
+from wrinkle_cad.strip.portable import atan2
 
 from .compiled import compiled
 from .sightlines import BEFORE_P, LENGTH, NEXT_P
@@ -203,4 +204,4 @@ def fold_angles(view: Floats, steps: npt.NDArray[np.int8]) -> Floats:
     )
     ax, ay = view[earlier, here], view[earlier + 1, here]
     bx, by = view[later, here], view[later + 1, here]
-    return np.arctan2(ay * bx - ax * by, -(ax * bx + ay * by))
+    return atan2(ay * bx - ax * by, -(ax * bx + ay * by))

@@ -18,6 +18,7 @@ import numpy as np
 import numpy.typing as npt
 
 from wrinkle_cad.settings import TWIST_PER_DEFECT
+from wrinkle_cad.strip.portable import atan2
 
 from .curve.polyline import segment_lengths
 from .sightlines import BEFORE_P, BEFORE_Q, NEXT_P, NEXT_Q, look_along_path, padded_banks
@@ -112,7 +113,7 @@ def _defects(triangulation: Triangulation) -> Floats:
     view = look_along_path(p, padded_banks(p), columns, padded_banks(q), triangulation.bridges)
     ax, ay = view[NEXT_P : NEXT_P + 2] - view[BEFORE_P : BEFORE_P + 2]
     bx, by = view[NEXT_Q : NEXT_Q + 2] - view[BEFORE_Q : BEFORE_Q + 2]
-    angle: Floats = np.arctan2(ax * by - ay * bx, ax * bx + ay * by)
+    angle: Floats = atan2(ax * by - ay * bx, ax * bx + ay * by)
     return angle
 
 

@@ -22,6 +22,7 @@ from OCP.TopoDS import TopoDS_Edge, TopoDS_Face, TopoDS_Vertex
 from wrinkle_cad import settings
 from wrinkle_cad.cad.kernel.evaluation import PoleCurve
 from wrinkle_cad.cad.kernel.splines import make_curve_2d, make_surface
+from wrinkle_cad.strip.portable import dot
 
 from .face_borders import Border, BorderEdge
 from .plane_faces import cross_rows, make_wire
@@ -133,7 +134,7 @@ def _chord_poles(shape: PoleCurve, apex: Floats, *, is_start: bool) -> tuple[int
 def _on_ruling(shape: PoleCurve, u: float, base: Floats, apex: Floats) -> Geom2d_BSplineCurve:
     """Returns the parameter curve of an edge along the ruling at u, each pole dropped onto it."""
     way = apex - base
-    across = (shape.poles - base) @ way / (way @ way)
+    across = dot(shape.poles - base, way) / dot(way, way)
     places = np.column_stack((np.full(len(across), u), across))
     return make_curve_2d(places, shape.knots, shape.multiplicities, shape.degree, shape.weights)
 

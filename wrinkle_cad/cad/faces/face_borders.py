@@ -6,7 +6,6 @@ that neighbour.
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -21,6 +20,7 @@ from wrinkle_cad import settings
 from wrinkle_cad.cad.kernel.evaluation import PoleCurve
 from wrinkle_cad.cad.kernel.splines import curve_arrays
 from wrinkle_cad.errors import CadError
+from wrinkle_cad.strip.portable import norm
 
 Floats = NDArray[np.float64]
 
@@ -67,7 +67,7 @@ def border_poles(border: Border) -> Floats:
 def straight_edge(start: TopoDS_Vertex, end: TopoDS_Vertex, ends: Floats) -> BorderEdge:
     """Returns the straight edge between two vertices at (2, 3) mm, its parameter the length."""
     way = ends[1] - ends[0]
-    length = math.sqrt(float(way @ way))
+    length = norm(way)
     line = Geom_Line(gp_Pnt(*ends[0].tolist()), gp_Dir(*way.tolist()))
     shape = PoleCurve(1, np.array([0.0, length]), np.array([2, 2]), ends, None)
     return BorderEdge(_edge(line, start, end, 0.0, length), shape, start, end)

@@ -12,6 +12,7 @@ from OCP.TopoDS import TopoDS_Face, TopoDS_Wire
 
 from wrinkle_cad import settings
 from wrinkle_cad.cad.kernel.evaluation import PoleCurve
+from wrinkle_cad.strip.portable import dot, norm
 
 from .face_borders import Border, border_poles
 
@@ -73,16 +74,16 @@ def is_plane_sector(curve: PoleCurve, apex: Floats) -> bool:
     spokes = _spokes(curve.poles, apex)
     turns = np.cross(spokes[:-1], spokes[1:])
     normal = turns.sum(axis=0)
-    size = float(np.linalg.norm(normal))
-    if size == 0.0 or np.abs(spokes @ normal).max() > settings.PLANE_GAP * size:
+    size = norm(normal)
+    if size == 0.0 or np.abs(dot(spokes, normal)).max() > settings.PLANE_GAP * size:
         return False
-    if (turns @ normal > 0.0).all():
+    if (dot(turns, normal) > 0.0).all():
         # A B-spline crosses no line more often than the polygon of its poles does.
         return True
     share = np.linspace(0.0, 1.0, 33)[:-1, None]
     along = ((1.0 - share) * curve.knots[:-1] + share * curve.knots[1:]).T.ravel()
     spokes = _spokes(curve.point_at(np.append(along, curve.knots[-1])), apex)
-    return bool((np.cross(spokes[:-1], spokes[1:]) @ normal > 0.0).all())
+    return bool((dot(np.cross(spokes[:-1], spokes[1:]), normal) > 0.0).all())
 
 
 def _spokes(points: Floats, apex: Floats) -> Floats:

@@ -15,6 +15,7 @@ from wrinkle_cad.cad.kernel.topology import make_vertex
 from wrinkle_cad.cad.rail.directrix import Directrix
 from wrinkle_cad.errors import CadError
 from wrinkle_cad.strip.curve.sampling import Samples
+from wrinkle_cad.strip.portable import norm
 from wrinkle_cad.strip.triangulation import P_STEP, Triangulation
 
 from .face_borders import (
@@ -100,9 +101,7 @@ class Skeleton:
         """
         at = [self.corner(fan.side, fan.start), self.corner(fan.side, fan.end)]
         start, end, apex = self.points[[*at, self.corner(1 - fan.side, fan.apex)]]
-        spans = [
-            float(np.linalg.norm(b - a)) for a, b in ((start, apex), (end, apex), (start, end))
-        ]
+        spans = [norm(b - a) for a, b in ((start, apex), (end, apex), (start, end))]
         ends = ((start, apex), (end, apex), (start, end))[int(np.argmax(spans))]
         gap = _largest_gap(np.vstack((border_poles(self.bank(fan)), start, end, apex)), *ends)
         if gap > self.limit:
@@ -153,7 +152,7 @@ class Skeleton:
 
 def _largest_gap(points: Floats, start: Floats, end: Floats) -> float:
     """Returns the largest distance in mm of (k, 3) points from the line through two points."""
-    way = (end - start) / np.linalg.norm(end - start)
+    way = (end - start) / norm(end - start)
     return float(np.linalg.norm(np.cross(points - start, way), axis=1).max())
 
 

@@ -13,6 +13,7 @@ from OCP.TopoDS import TopoDS_Vertex
 from wrinkle_cad import settings
 from wrinkle_cad.cad.kernel.splines import make_curve
 from wrinkle_cad.cad.kernel.topology import make_vertex
+from wrinkle_cad.strip.portable import norm
 
 from .face_borders import Border, BorderEdge, curved_edge, flipped, loosen, straight_edge, sub_curve
 
@@ -70,6 +71,6 @@ def _halves(bank: BorderEdge, at: float) -> tuple[BorderEdge, BorderEdge, TopoDS
 
 
 def _is_thin(bank: BorderEdge, chord: Floats, limit: float) -> bool:
-    way = (chord[1] - chord[0]) / np.linalg.norm(chord[1] - chord[0])
+    way = (chord[1] - chord[0]) / norm(chord[1] - chord[0])
     gaps = np.linalg.norm(np.cross(bank.shape.poles - chord[0], way), axis=1)
     return bool(gaps.max() <= limit)

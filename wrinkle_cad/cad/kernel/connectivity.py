@@ -11,6 +11,8 @@ from OCP.BRepAdaptor import BRepAdaptor_Curve
 from OCP.TopAbs import TopAbs_REVERSED
 from OCP.TopoDS import TopoDS_Edge, TopoDS_Face, TopoDS_Shape, TopoDS_Shell
 
+from wrinkle_cad.strip.portable import norm
+
 from . import topology as kernel
 from .shape_index import ShapeIndex
 
@@ -68,17 +70,13 @@ def border_chain(
     chain: list[TopoDS_Edge] = []
     here, best, length = start, np.inf, 0
     while left:
-        gaps = [
-            (float(np.linalg.norm(ends[k] - here)), i, k)
-            for i, (_, ends) in enumerate(left)
-            for k in (0, 1)
-        ]
+        gaps = [(norm(ends[k] - here), i, k) for i, (_, ends) in enumerate(left) for k in (0, 1)]
         _, i, k = min(gaps)
         edge, ends = left.pop(i)
         chain.append(edge if k == 0 else kernel.as_edge(edge.Reversed()))
         here = ends[1 - k]
-        if float(np.linalg.norm(here - end)) < best:
-            best, length = float(np.linalg.norm(here - end)), len(chain)
+        if norm(here - end) < best:
+            best, length = norm(here - end), len(chain)
     return tuple(chain[:length])
 
 

@@ -22,6 +22,7 @@ from wrinkle_cad.cad.kernel.evaluation import PoleCurve
 from wrinkle_cad.cad.kernel.splines import curve_arrays
 from wrinkle_cad.cad.kernel.topology import as_edge, as_wire, edge_curve, edges_of, kind_name
 from wrinkle_cad.errors import InputError
+from wrinkle_cad.strip.portable import norm
 
 Floats = NDArray[np.float64]
 
@@ -155,7 +156,7 @@ def _joined(curves: Sequence[PoleCurve], name: str) -> list[PoleCurve]:
     limit = min(settings.RAIL_GAP, settings.RAIL_GAP_PER_SIZE * size)
     ends = np.array([(curve.poles[0], curve.poles[-1]) for curve in curves])
     for i in range(1, len(curves)):
-        gap = float(np.linalg.norm(ends[i, 0] - ends[i - 1, 1]))
+        gap = norm(ends[i, 0] - ends[i - 1, 1])
         if gap > limit:
             x, y, z = ends[i - 1, 1]
             raise InputError(
@@ -166,6 +167,6 @@ def _joined(curves: Sequence[PoleCurve], name: str) -> list[PoleCurve]:
         ends[i, 0] = ends[i - 1, 1] = (ends[i, 0] + ends[i - 1, 1]) / 2.0
     # The ends of one edge are where its author put them; only edges are joined to one another.
     closing = limit if len(curves) > 1 else min(limit, settings.CONFUSION)
-    if float(np.linalg.norm(ends[0, 0] - ends[-1, 1])) <= closing:
+    if norm(ends[0, 0] - ends[-1, 1]) <= closing:
         ends[0, 0] = ends[-1, 1] = (ends[0, 0] + ends[-1, 1]) / 2.0
     return [curve.joined(*ends[i]) for i, curve in enumerate(curves)]

@@ -24,6 +24,7 @@ from wrinkle_cad.cad.kernel.splines import make_curve
 from wrinkle_cad.cad.kernel.topology import kernel_step
 from wrinkle_cad.errors import InputError
 from wrinkle_cad.strip.curve.polyline import polyline_length, segment_lengths
+from wrinkle_cad.strip.portable import dot
 
 from .chain import chain_of
 
@@ -278,7 +279,7 @@ def orient_alike(p: Directrix, q: Directrix) -> tuple[Directrix, Directrix, bool
     """
     turned = reversed_directrix(q)
     if p.is_closed and q.is_closed:
-        against = float(_area_vector(p) @ _area_vector(q)) < 0.0
+        against = float(dot(_area_vector(p), _area_vector(q))) < 0.0
     else:
         tie = 1e-9 * (p.length + q.length)
         gain = _mean_distance(p, q, 2) - _mean_distance(p, turned, 2)

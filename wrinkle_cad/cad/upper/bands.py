@@ -24,6 +24,7 @@ from wrinkle_cad.errors import InputError
 from wrinkle_cad.strip.curve.nearest import nearest_on_polyline
 from wrinkle_cad.strip.curve.polyline import segment_lengths
 from wrinkle_cad.strip.curve.sampling import Samples
+from wrinkle_cad.strip.portable import norm
 from wrinkle_cad.strip.sampled_strip import SampledStrip
 from wrinkle_cad.strip.triangulation import Triangulation, triangulate
 
@@ -75,7 +76,7 @@ def side_curve(edges: Sequence[TopoDS_Edge], name: str) -> Directrix:
     for edge in edges:
         if run:
             before, after = edge_ends(run[-1])[1], edge_ends(edge)[0]
-            if float(np.linalg.norm(after - before)) > settings.GAP_CROSSED:
+            if norm(after - before) > settings.GAP_CROSSED:
                 run.append(_straight(before, after))
         run.append(edge)
     return make_directrix(run, name=name)

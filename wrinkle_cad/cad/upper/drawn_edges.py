@@ -16,10 +16,11 @@ from OCP.gp import gp_Pnt
 from OCP.ShapeAnalysis import ShapeAnalysis_Surface
 from OCP.TopLoc import TopLoc_Location
 from OCP.TopoDS import TopoDS_Edge, TopoDS_Face
-from scipy.interpolate import BSpline, make_interp_spline
+from scipy.interpolate import BSpline
 
 from wrinkle_cad import settings
 from wrinkle_cad.cad.kernel.splines import make_curve, make_curve_2d
+from wrinkle_cad.strip.curve.cubic import cubic_through
 from wrinkle_cad.strip.curve.polyline import arc_lengths
 
 from .outline import Side
@@ -41,7 +42,7 @@ def drawn_edges(face: TopoDS_Face, sides: Sequence[Side]) -> list[TopoDS_Edge] |
         if uv is None:
             return None
         arc = arc_lengths(side.points)
-        edge = _drawn_edge(face, surface, make_interp_spline(arc, uv, k=3), arc)
+        edge = _drawn_edge(face, surface, BSpline(*cubic_through(arc, uv), 3), arc)
         if edge is None:
             return None
         edges.append(edge)
@@ -56,7 +57,7 @@ def _drawn_edge(
         at = np.interp(
             np.linspace(0.0, len(arc) - 1.0, count * (len(arc) - 1) + 1), range(len(arc)), arc
         )
-        space = make_interp_spline(at, _on_surface(surface, flat(at)), k=3)
+        space = BSpline(*cubic_through(at, _on_surface(surface, flat(at))), 3)
         between = (at[:-1, None] + np.diff(at)[:, None] * BETWEEN).ravel()
         apart = _on_surface(surface, flat(between)) - space(between)
         gap = float(np.linalg.norm(apart, axis=1).max())

@@ -21,6 +21,7 @@ from wrinkle_cad.cad.kernel import topology as kernel
 from wrinkle_cad.cad.kernel.connectivity import edge_ends
 from wrinkle_cad.cad.kernel.splines import curve_arrays, make_surface
 from wrinkle_cad.strip.curve.polyline import segment_gaps
+from wrinkle_cad.strip.portable import norm
 
 Floats = NDArray[np.float64]
 
@@ -38,10 +39,10 @@ def end_fan(
     """
     apex = bridge.mean(axis=0)
     run: list[TopoDS_Edge] = []
-    if float(np.linalg.norm(corners[0] - bridge[0])) > settings.COINCIDENT:
+    if norm(corners[0] - bridge[0]) > settings.COINCIDENT:
         run.append(_straight(bridge[0], corners[0]))
     run.extend(edges)
-    if float(np.linalg.norm(corners[1] - bridge[1])) > settings.COINCIDENT:
+    if norm(corners[1] - bridge[1]) > settings.COINCIDENT:
         run.append(_straight(corners[1], bridge[1]))
     if not run or _height(run, bridge) <= settings.SLIVER:
         return ()

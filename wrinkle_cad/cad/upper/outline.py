@@ -17,6 +17,7 @@ from wrinkle_cad import settings
 from wrinkle_cad.cad.rail.directrix import Directrix
 from wrinkle_cad.errors import InputError
 from wrinkle_cad.strip.curve.polyline import arc_lengths, points_at, polyline_length
+from wrinkle_cad.strip.portable import dot, norm, sin
 
 from .projection import Feet, UpperFaces
 
@@ -129,7 +130,7 @@ def faded_margin(shares: Floats, margin: float, fade: float) -> Floats:
     part at an angle: where they part tangentially, the band between them begins as a needle.
     """
     near = np.minimum(shares, 1.0 - shares)
-    return np.asarray(margin * np.sin(0.5 * np.pi * np.clip(near / fade, 0.0, 1.0)))
+    return np.asarray(margin * sin(0.5 * np.pi * np.clip(near / fade, 0.0, 1.0)))
 
 
 def side_of(upper: UpperFaces, rail: Rail, toward: Floats, margin: Floats, name: str) -> Side:
@@ -151,7 +152,7 @@ def end_between(upper: UpperFaces, p: Side, q: Side, at: int, name: str) -> Side
     It is the projection of the straight end bridge; None where the rails meet.
     """
     bridge = np.array([p.points[at], q.points[at]])
-    width = float(np.linalg.norm(bridge[1] - bridge[0]))
+    width = norm(bridge[1] - bridge[0])
     length = polyline_length(p.points)
     if width <= settings.MEETING_PER_LENGTH * length:
         return None
@@ -165,7 +166,7 @@ def end_between(upper: UpperFaces, p: Side, q: Side, at: int, name: str) -> Side
         p.points[at + 3 * ahead] + q.points[at + 3 * ahead] - p.points[at] - q.points[at]
     )
     inward = unit(np.cross(normals, unit(np.gradient(points, axis=0))))
-    inward *= np.sign(inward @ onward)[:, None]
+    inward *= np.sign(dot(inward, onward))[:, None]
     return Side(name, points, normals, inward, feet.faces)
 
 

@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from wrinkle_cad import settings
 from wrinkle_cad.cad.rail.directrix import Directrix, make_directrix
 from wrinkle_cad.errors import InputError
+from wrinkle_cad.strip.portable import cos, sin
 
 from .opening import Opening
 from .outline import Rail
@@ -115,11 +116,11 @@ def _wave_shape(
     angle = 2.0 * np.pi * waves * rail.shares + phase
     near = np.minimum(rail.shares, 1.0 - rail.shares)
     # A squared sine: at the ends it grows slower than the margin, so the band does not stand up.
-    envelope = np.sin(0.5 * np.pi * np.clip(near / fade, 0.0, 1.0)) ** 2
+    envelope = sin(0.5 * np.pi * np.clip(near / fade, 0.0, 1.0)) ** 2
     if side == "both":
-        return np.asarray(envelope * np.sin(angle))
+        return np.asarray(envelope * sin(angle))
     sign = 1.0 if side == "out" else -1.0
-    return np.asarray(sign * envelope * 0.5 * (1.0 - np.cos(angle)))
+    return np.asarray(sign * envelope * 0.5 * (1.0 - cos(angle)))
 
 
 def _offset(rail: Rail, amount: float | Wave, shape: Floats, name: str) -> Floats:

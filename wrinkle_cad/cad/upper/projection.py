@@ -24,6 +24,7 @@ from OCP.TopoDS import TopoDS_Face, TopoDS_Shape
 from wrinkle_cad import settings
 from wrinkle_cad.cad.kernel import topology as kernel
 from wrinkle_cad.errors import InputError
+from wrinkle_cad.strip.portable import norm
 
 Floats = NDArray[np.float64]
 
@@ -105,7 +106,7 @@ class UpperFaces:
         gaps = []
         for i, surface in enumerate(self._surfaces):
             low, high = self._boxes[i]
-            slack = 1e-3 * float(np.linalg.norm(high - low))
+            slack = 1e-3 * norm(high - low)
             if (at < low - slack).any() or (at > high + slack).any():
                 gaps.append((np.inf, gp_Pnt2d()))
                 continue

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -10,6 +11,7 @@ from OCP.TopoDS import TopoDS_Edge, TopoDS_Face
 
 from wrinkle_cad.cad.kernel import topology as kernel
 from wrinkle_cad.cad.kernel.shape_index import ShapeIndex
+from wrinkle_cad.strip.portable import dot, norm
 
 from .split import edge_frame, oriented_edges
 
@@ -47,11 +49,10 @@ def seam_angles(faces: Sequence[TopoDS_Face], parts: Sequence[str]) -> tuple[Sea
     for owners in uses:
         if len(owners) == 2 and parts[owners[0][0]] != parts[owners[1][0]]:
             normals = [edge_frame(edge, faces[i])[2] for i, edge in owners]
-            turn = np.arctan2(
-                np.linalg.norm(np.cross(normals[0], normals[1])), normals[0] @ normals[1]
-            )
+            first, second = normals
+            turn = math.atan2(norm(np.cross(first, second)), float(dot(first, second)))
             seam = " | ".join(sorted(parts[i] for i, _ in owners))
-            found.setdefault(seam, []).append((kernel.length_of(owners[0][1]), float(turn)))
+            found.setdefault(seam, []).append((kernel.length_of(owners[0][1]), turn))
     return tuple(_summed(seam, found[seam]) for seam in sorted(found))
 
 

@@ -8,11 +8,11 @@ import numpy as np
 from numpy.typing import NDArray
 from OCP.BRepBuilderAPI import BRepBuilderAPI_MakeEdge, BRepBuilderAPI_MakeWire
 from OCP.TopoDS import TopoDS_Edge, TopoDS_Shape
-from scipy.interpolate import make_interp_spline
 
 from wrinkle_cad.cad.kernel.splines import make_curve
 from wrinkle_cad.cad.kernel.topology import make_compound
 from wrinkle_cad.cad.rail.directrix import Directrix
+from wrinkle_cad.strip.curve.cubic import cubic_through
 from wrinkle_cad.strip.curve.polyline import arc_lengths
 
 Floats = NDArray[np.float64]
@@ -20,9 +20,9 @@ Floats = NDArray[np.float64]
 
 def smooth_edge(points: Floats) -> TopoDS_Edge:
     """Returns a cubic B-spline edge through (k, 3) points in mm, k >= 4, C2 throughout."""
-    spline = make_interp_spline(arc_lengths(points), points, k=3)
-    knots, counts = np.unique(spline.t, return_counts=True)
-    return BRepBuilderAPI_MakeEdge(make_curve(spline.c, knots, counts, 3)).Edge()
+    spline = cubic_through(arc_lengths(points), points)
+    knots, counts = np.unique(spline.knots, return_counts=True)
+    return BRepBuilderAPI_MakeEdge(make_curve(spline.poles, knots, counts, 3)).Edge()
 
 
 def curve_edges(directrix: Directrix) -> list[TopoDS_Edge]:

@@ -22,15 +22,16 @@ from OCP.gp import gp_Pnt, gp_Vec
 from OCP.TopAbs import TopAbs_EDGE, TopAbs_FORWARD, TopAbs_REVERSED
 from OCP.TopExp import TopExp_Explorer
 from OCP.TopoDS import TopoDS_Edge, TopoDS_Face, TopoDS_Shape
-from scipy.interpolate import make_interp_spline
 
 from wrinkle_cad import settings
 from wrinkle_cad.cad.kernel import topology as kernel
 from wrinkle_cad.cad.kernel.shape_index import ShapeIndex
 from wrinkle_cad.cad.kernel.splines import make_surface
 from wrinkle_cad.errors import CadError
+from wrinkle_cad.strip.curve.cubic import cubic_through
 from wrinkle_cad.strip.curve.nearest import nearest_on_polyline
 from wrinkle_cad.strip.curve.polyline import arc_lengths
+from wrinkle_cad.strip.portable import dot, norm
 
 from .drawn_edges import drawn_edges
 from .outline import Side, unit
@@ -143,10 +144,10 @@ def _ribbon(side: Side, height: float, overrun: tuple[float, float]) -> TopoDS_F
             points, normals = _extended(points, normals, first, extra)
     arc = arc_lengths(points)
     rows = np.stack((points - height * normals, points + height * normals), axis=1)
-    spline = make_interp_spline(arc, rows.reshape(len(rows), 6), k=3)
-    knots, counts = np.unique(spline.t, return_counts=True)
+    spline = cubic_through(arc, rows.reshape(len(rows), 6))
+    knots, counts = np.unique(spline.knots, return_counts=True)
     surface = make_surface(
-        spline.c.reshape(-1, 2, 3), (knots, (0.0, 2.0 * height)), (counts, (2, 2)), (3, 1)
+        spline.poles.reshape(-1, 2, 3), (knots, (0.0, 2.0 * height)), (counts, (2, 2)), (3, 1)
     )
     return BRepBuilderAPI_MakeFace(surface, settings.CONFUSION).Face()
 
@@ -155,7 +156,7 @@ def _extended(points: Floats, normals: Floats, first: bool, extra: float) -> tup
     """Runs a side on beyond one end, straight, in steps as long as its own."""
     sense = 1 if first else -1
     run, turn = points[::sense], normals[::sense]
-    step = float(np.linalg.norm(run[1] - run[0]))
+    step = norm(run[1] - run[0])
     direction = unit((run[0] - run[2])[None])[0]
     count = max(2, int(np.ceil(extra / step)))
     beyond = run[0] + np.arange(count, 0, -1)[:, None] * (extra / count) * direction
@@ -241,9 +242,9 @@ def _cut_edge(
     i = int(np.argmin([distance for distance, _ in places]))
     side, at = sides[i], places[i][1]
     j = min(int(at), len(side.points) - 2)
-    along = float(tangent @ (side.points[j + 1] - side.points[j])) > 0.0
+    along = float(dot(tangent, side.points[j + 1] - side.points[j])) > 0.0
     forward = edge if along else kernel.as_edge(edge.Reversed())
-    return CutEdge(forward, i, at), float(material @ side.inward[round(at)])
+    return CutEdge(forward, i, at), float(dot(material, side.inward[round(at)]))
 
 
 def edge_frame(edge: TopoDS_Edge, face: TopoDS_Face) -> tuple[Floats, Floats, Floats]:

@@ -17,6 +17,7 @@ from wrinkle_cad.cad.kernel.connectivity import edge_ends
 from wrinkle_cad.cad.kernel.face_areas import face_areas
 from wrinkle_cad.cad.rail.directrix import Directrix
 from wrinkle_cad.errors import CadError, InputError
+from wrinkle_cad.strip.portable import norm
 
 from .bands import Band, StripLike, make_band
 from .border_check import compared_border
@@ -214,7 +215,7 @@ def _gaps_bridged(opening: Opening) -> float:
     bridged = 0.0
     for edges in (opening.p_edges, opening.q_edges):
         for before, after in pairwise(edges):
-            gap = float(np.linalg.norm(edge_ends(after)[0] - edge_ends(before)[1]))
+            gap = norm(edge_ends(after)[0] - edge_ends(before)[1])
             bridged += gap if gap > settings.GAP_CROSSED else 0.0
     return bridged
 

@@ -9,6 +9,7 @@ the forms of notches by layers 80-83; ``aama`` has layer 4 for all of them.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import replace
 from datetime import datetime
@@ -218,7 +219,7 @@ def _write_marks(block: BlockLayout, piece: PatternPiece, profile: Profile) -> N
             if profile.name == "astm":
                 layer = _ASTM_NOTCHES.get(notch.kind, layer)
             x, y = rounded(notch.position)
-            angle = float(np.degrees(np.arctan2(notch.direction[1], notch.direction[0]))) % 360.0
+            angle = math.degrees(math.atan2(notch.direction[1], notch.direction[0])) % 360.0
             width = 0.0 if notch.kind == "slit" else notch.width
             given = {
                 "layer": layer,

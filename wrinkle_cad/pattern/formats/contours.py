@@ -19,7 +19,9 @@ from wrinkle_cad import settings
 from wrinkle_cad.pattern.piece.flat import Indices
 from wrinkle_cad.pattern.piece.outline import closed_turns
 from wrinkle_cad.pattern.piece.piece import Floats
+from wrinkle_cad.strip.curve.cubic import cubic_through
 from wrinkle_cad.strip.curve.polyline import arc_lengths, row_lengths, segment_gaps
+from wrinkle_cad.strip.portable import dot
 
 Curves = Literal["lines", "arcs", "splines"]
 
@@ -90,7 +92,7 @@ def _joined(runs: Sequence[_Run]) -> BSpline:
 def _fitted(run: Floats, tolerance: float) -> _Run:
     """Returns a smooth spline through every eighth, fourth, second or each vertex, if one fits."""
     # Only here is scipy needed, and only on request: it costs a fifth of a second to load.
-    from scipy.interpolate import make_interp_spline
+    from scipy.interpolate import BSpline
 
     line = shapely.LineString(run)
     walked = arc_lengths(run)
@@ -99,10 +101,10 @@ def _fitted(run: Floats, tolerance: float) -> _Run:
         index = np.unique(np.append(np.arange(0, len(run), stride), len(run) - 1))
         if len(index) < 4:
             continue
-        spline = make_interp_spline(walked[index], run[index], k=3)
-        made = shapely.LineString(spline(dense))
+        knots, poles = cubic_through(walked[index], run[index])
+        made = shapely.LineString(BSpline(knots, poles, 3)(dense))
         if shapely.hausdorff_distance(made, line) <= tolerance:
-            return _Run(spline.c, spline.t[4:-4], float(walked[-1]))
+            return _Run(poles, knots[4:-4], float(walked[-1]))
     return _straight(run)
 
 
@@ -148,7 +150,8 @@ def _arc_bulge(run: Floats, tolerance: float) -> float | None:
         return None
     along = chord / length
     across = np.array((along[1], -along[0]))
-    x, y = (run - run[0]) @ along - 0.5 * length, (run - run[0]) @ across
+    away = run - run[0]
+    x, y = dot(away, along) - 0.5 * length, dot(away, across)
     x_mid, rise = x[len(run) // 2], y[len(run) // 2]
     # The circle through (-c, 0), (c, 0) and the middle vertex: x^2 + y^2 - 2 e y = c^2.
     half = 0.5 * length

@@ -9,10 +9,13 @@ shapely's: nothing here intersects curves by hand.
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 import shapely
 
 from wrinkle_cad import settings
+from wrinkle_cad.strip.portable import cos, dot, sin
 
 from .options import PerSide
 from .outline import closed_turns, corner_vertices
@@ -84,7 +87,7 @@ def _mitre(
     start = width_in * np.array((into[1], -into[0]))
     stop = width_on * np.array((onward[1], -onward[0]))
     sine = into[0] * onward[1] - into[1] * onward[0]
-    cosine = float(into @ onward)
+    cosine = float(dot(into, onward))
     reach = mitre_limit * max(width_in, width_on)
     axis = into - onward
     if sine > 1e-9:
@@ -97,8 +100,8 @@ def _mitre(
             return np.vstack((tip,))
         axis = tip
     axis = axis / np.hypot(*axis)
-    first = start + (reach - start @ axis) / (into @ axis) * into
-    second = stop + (reach - stop @ axis) / (onward @ axis) * onward
+    first = start + (reach - dot(start, axis)) / dot(into, axis) * into
+    second = stop + (reach - dot(stop, axis)) / dot(onward, axis) * onward
     return np.vstack((first, second))
 
 
@@ -107,12 +110,12 @@ def _fan(outward: Floats, turn: float, width: float, tolerance: float) -> Floats
 
     The arc of ``turn`` rad ends where its segment starts, which looks ``outward``.
     """
-    largest = 2.0 * np.arccos(width / (width + tolerance))
-    count = max(1, int(np.ceil(turn / largest)))
-    angle = np.arctan2(outward[1], outward[0]) - turn
+    largest = 2.0 * math.acos(width / (width + tolerance))
+    count = max(1, math.ceil(turn / largest))
+    angle = math.atan2(outward[1], outward[0]) - turn
     angles = angle + turn * (np.arange(count) + 0.5) / count
-    radius = width / np.cos(0.5 * turn / count)
-    tips: Floats = radius * np.column_stack((np.cos(angles), np.sin(angles)))
+    radius = width / math.cos(0.5 * turn / count)
+    tips: Floats = radius * np.column_stack((cos(angles), sin(angles)))
     return tips
 
 

@@ -9,6 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from wrinkle_cad.errors import InputError
+from wrinkle_cad.strip.portable import dot, norm
 
 from .options import Direction
 from .piece import Floats, frozen
@@ -78,14 +79,18 @@ class FlatStrip:
         if np.hypot(*run) < 1e-6 * size:
             run = self.p[min(1, len(self.p) - 1)] - self.p[0]
         cosine, sine = run / np.hypot(*run) if np.any(run) else (1.0, 0.0)
-        turn = np.array([[cosine, -sine], [sine, cosine]])
         origin = self.p[0]
+
+        def turned(points: Floats) -> Floats:
+            x, y = (points - origin).T
+            return frozen(np.column_stack((x * cosine + y * sine, y * cosine - x * sine)))
+
         return replace(
             self,
-            p=frozen((self.p - origin) @ turn),
-            q=frozen((self.q - origin) @ turn),
-            p_line=frozen((self.p_line - origin) @ turn),
-            q_line=frozen((self.q_line - origin) @ turn),
+            p=turned(self.p),
+            q=turned(self.q),
+            p_line=turned(self.p_line),
+            q_line=turned(self.q_line),
         )
 
     def flat_direction(self, direction: Direction, *, name: str) -> Floats:
@@ -102,17 +107,21 @@ class FlatStrip:
         if direction == "across":
             return np.array([0.0, 1.0])
         space, flat = self._middle_triangle()
-        edges = space[1:] - space[0]
-        # Least squares: coordinates of the projection in the triangle's own (skew) base.
-        shares = np.linalg.lstsq(edges.T, np.array(direction, dtype=np.float64), rcond=None)[0]
-        laid = shares @ (flat[1:] - flat[0])
-        length = float(np.hypot(*laid)) / float(np.linalg.norm(direction))
+        one, two = space[1:] - space[0]
+        given = np.array(direction, dtype=np.float64)
+        # Coordinates of the projection in the triangle's own (skew) base, by Gram and Schmidt.
+        along = one / norm(one)
+        across = two - dot(two, along) * along
+        share_two = dot(given, across) / dot(across, across)
+        share_one = dot(given - share_two * two, along) / norm(one)
+        laid = share_one * (flat[1] - flat[0]) + share_two * (flat[2] - flat[0])
+        length = norm(laid) / norm(given)
         if length < 1e-3:
             raise InputError(
                 f"{name} direction {direction} - perpendicular to the strip at its middle - it "
                 "must lie along the surface there - give another direction"
             )
-        unit: Floats = laid / np.hypot(*laid)
+        unit: Floats = laid / norm(laid)
         return unit
 
     def middle(self) -> Floats:

@@ -12,6 +12,7 @@ import numpy as np
 from wrinkle_cad import settings
 from wrinkle_cad.errors import InputError
 from wrinkle_cad.strip.curve.polyline import segment_lengths
+from wrinkle_cad.strip.portable import atan2, dot
 
 from .options import END_SIDE, P_SIDE, Q_SIDE, START_SIDE
 from .piece import Bools, Floats, Ints, Outline, make_outline
@@ -84,7 +85,7 @@ def turns(line: Floats) -> Floats:
     steps = np.diff(line, axis=0)
     before, after = steps[:-1], steps[1:]
     cross = before[:, 0] * after[:, 1] - before[:, 1] * after[:, 0]
-    turn: Floats = np.arctan2(cross, np.sum(before * after, axis=1))
+    turn: Floats = atan2(cross, dot(before, after))
     return turn
 
 

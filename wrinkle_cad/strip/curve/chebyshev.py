@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 
 from wrinkle_cad.errors import InputError
 from wrinkle_cad.strip.compiled import compiled
+from wrinkle_cad.strip.portable import cos
 
 FloatArray = NDArray[np.float64]
 PointAt = Callable[[FloatArray], FloatArray]
@@ -31,13 +32,13 @@ many times the last one."""
 NOISE: Final = 256 * np.finfo(np.float64).eps
 MOST_CELLS: Final = 200_000
 
-NODES: Final = -np.cos(np.pi * np.arange(DEGREE + 1) / DEGREE)
+NODES: Final = -cos(np.pi * np.arange(DEGREE + 1) / DEGREE)
 
 
 def _coefficients_of_values() -> FloatArray:
     """(17, 17): from values at ``NODES`` to Chebyshev coefficients (discrete cosine transform)."""
     k = np.arange(DEGREE + 1)
-    matrix = 2.0 / DEGREE * np.cos(np.pi * np.outer(k, DEGREE - k) / DEGREE)
+    matrix = 2.0 / DEGREE * cos(np.pi * np.outer(k, DEGREE - k) / DEGREE)
     matrix[:, [0, -1]] *= 0.5
     matrix[[0, -1], :] *= 0.5
     return matrix
@@ -121,7 +122,7 @@ def fit_cells(
             extent = float(np.max(np.ptp(nodes.reshape(-1, 3), axis=0)))
             limit = min(accuracy, share_of_extent * extent)
             limit = max(limit, NOISE * float(np.max(np.abs(nodes))))
-        coefficients = np.einsum("kj,cjx->ckx", _TO_COEFFICIENTS, nodes)
+        coefficients = times_each(_TO_COEFFICIENTS, nodes)
         tail = TAIL_WEIGHT * np.abs(coefficients[:, -TAIL:]).max(axis=(1, 2))
         open_ = (tail > limit) & _can_be_halved(low, high, nodes, limit)
         starts.append(low[~open_])
@@ -165,6 +166,18 @@ def _can_be_halved(
                 "be continuous - join the edges or sample them one by one"
             )
     return wide
+
+
+@compiled
+def times_each(matrix: FloatArray, cells: FloatArray) -> FloatArray:
+    """The product of a (17, 17) matrix with every (17, 3) cell, terms added in their order."""
+    product = np.zeros(cells.shape)
+    for cell in range(cells.shape[0]):
+        for row in range(matrix.shape[0]):
+            for column in range(matrix.shape[1]):
+                for axis in range(cells.shape[2]):
+                    product[cell, row, axis] += matrix[row, column] * cells[cell, column, axis]
+    return product
 
 
 @compiled

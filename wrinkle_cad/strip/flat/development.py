@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from wrinkle_cad.strip.compiled import compiled
-from wrinkle_cad.strip.curve.chebyshev import DEGREE, Cells, FloatArray, point_in_cell
+from wrinkle_cad.strip.curve.chebyshev import DEGREE, Cells, FloatArray, point_in_cell, times_each
 from wrinkle_cad.strip.curve.nearest import gap_from_segment
 
 IndexArray = NDArray[np.int64]
@@ -22,7 +22,27 @@ Pair = tuple[float, float]
 Panel = tuple[float, float, float, float]
 """Length, polar angle, area, polar angle swept backwards."""
 
-NODES, WEIGHTS = np.polynomial.legendre.leggauss(10)
+_HALF_NODES: Final = np.array(
+    [
+        0.14887433898163122,
+        0.4333953941292472,
+        0.6794095682990244,
+        0.8650633666889845,
+        0.9739065285171717,
+    ]
+)
+_HALF_WEIGHTS: Final = np.array(
+    [
+        0.2955242247147528,
+        0.2692667193099965,
+        0.219086362515982,
+        0.1494513491505804,
+        0.06667134430868814,
+    ]
+)
+NODES: Final = np.concatenate((-_HALF_NODES[::-1], _HALF_NODES))
+WEIGHTS: Final = np.concatenate((_HALF_WEIGHTS[::-1], _HALF_WEIGHTS))
+"""Gauss and Legendre's ten (Abramowitz and Stegun, table 25.4); numpy asks LAPACK for them."""
 ACCURACY: Final = 1e-10
 """Halving a panel may change its length, and move its end, by this share of its length."""
 ROUND_OFF: Final = 4096 * np.finfo(np.float64).eps
@@ -81,7 +101,7 @@ def develop_rail(
     segment = np.searchsorted(parameters, cells.edges[:-1], side="right").astype(np.int64) - 1
     relative = cells.coefficients.copy()
     relative[:, 0, :] -= apexes[segment]
-    slopes = np.ascontiguousarray(np.einsum("kj,cjx->ckx", _TO_DERIVATIVE, relative))
+    slopes = times_each(_TO_DERIVATIVE, relative)
     normals = _mean_normals(relative, slopes, segment, len(apexes))
     slack = (BULGE_SHARE * tolerance, ROUND_OFF * cells.size)
     rows, back, area = _integrate(relative, slopes, segment, normals, slack)

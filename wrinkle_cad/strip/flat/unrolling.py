@@ -13,6 +13,7 @@ from wrinkle_cad.settings import TURNED_BACK_PER_TOLERANCE, UNROLLING_ACCURACY
 from wrinkle_cad.strip.curve.chebyshev import FloatArray, PointAt, fit_cells
 from wrinkle_cad.strip.curve.polyline import arc_lengths
 from wrinkle_cad.strip.curve.sampling import Samples
+from wrinkle_cad.strip.portable import atan2, cos, dot, norm, sin
 from wrinkle_cad.strip.triangulation import P_STEP, Triangulation
 
 from .development import THINNING_SHARE, DevelopedRail, develop_rail, place_chain, thinned
@@ -77,7 +78,7 @@ def unroll(triangulation: Triangulation) -> Unrolling:
     outward = strip.before - strip.apex
     along = strip.after - strip.before
     doubled = np.linalg.norm(np.cross(outward, along), axis=1)
-    angles = np.arctan2(doubled, np.sum(outward * (strip.after - strip.apex), axis=1))
+    angles = atan2(doubled, dot(outward, strip.after - strip.apex))
     p, q, _, _ = place_chain(triangulation.steps, angles, strip.radii, strip.start)
     p_arc, q_arc = arc_lengths(triangulation.p), arc_lengths(triangulation.q)
     return Unrolling(
@@ -193,7 +194,7 @@ class _Chain:
         self.before = np.where(choose, points_p[i], points_q[j])
         self.after = np.where(choose, points_p[last_i], points_q[last_j])
         self.radii = np.linalg.norm(self.after - self.apex, axis=1)
-        self.start = float(np.linalg.norm(points_p[0] - points_q[0]))
+        self.start = norm(points_p[0] - points_q[0])
 
 
 def _check_samples(name: str, samples: Samples, points: FloatArray) -> None:
@@ -234,7 +235,7 @@ def _line(
     """A flat rail as a polyline, its arc lengths, and where the samples stand in it."""
     k = flat.segment
     x, y = outward[k].T
-    cosine, sine = np.cos(flat.angle), turn * np.sin(flat.angle)
+    cosine, sine = cos(flat.angle), turn * sin(flat.angle)
     turned = np.stack((x * cosine - y * sine, x * sine + y * cosine), axis=1)
     line = np.concatenate((samples[:1], apexes[k] + flat.radius[:, None] * turned))
     ends = _last_of_segments(flat) + 1
