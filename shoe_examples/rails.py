@@ -9,7 +9,8 @@ from OCP.gp import gp_Dir, gp_Lin, gp_Pnt
 from OCP.IntCurvesFace import IntCurvesFace_ShapeIntersector
 from OCP.TopoDS import TopoDS_Edge, TopoDS_Shape
 
-from wrinkle_cad.cad.kernel.topology import free_edges, length_of, make_vertex
+from wrinkle_cad.cad.kernel.measures import length_of
+from wrinkle_cad.cad.kernel.topology import free_edges, make_vertex
 from wrinkle_cad.cad.upper.smooth import smooth_edge
 
 AXIS_HEIGHT = 2.0

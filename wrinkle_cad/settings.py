@@ -115,8 +115,11 @@ AREA_RELATIVE_ERRORS: Final = (1e-8, 1e-6, 1e-4, 1e-2)
 AREA_RELATIVE_ERROR: Final = 1e-8
 """How exactly the CAD kernel integrates the area of a face; its own default is some 1e-5."""
 
-AREA_ORDERS: Final = (1e-6, 1e-9, 1e-12, 1e-14, 1e-16, 1e-20, 1e-30)
+AREA_ORDERS: Final = (1e-3, 1e-5, 1e-7, 1e-9, 1e-12, 1e-14, 1e-16, 1e-20, 1e-30)
 """Error bounds that make the CAD kernel choose ever higher orders of integration."""
+
+AREA_FIRST_ORDER_PER_ERROR: Final = 500.0
+"""The first bound asked for, per relative error wanted: mostly two orders agree far below it."""
 
 PATTERN_CORNER: Final = 0.5
 """rad; the outline of a pattern turns sharper than this at a corner, else it is a curve."""
@@ -343,9 +346,6 @@ EDGE_TOLERANCE_LIMIT: Final = 1e-3
 BAND_BENDING_PRICE: Final = 5.0
 """A band that bends more than so many times the least is taken with the least bending instead:
 its extra valid bridges were bought with folds."""
-
-AREA_BALANCE_ORDERS: Final = (1e-3, 1e-5, 1e-7, 1e-9, 1e-12)
-"""Error bounds that make the CAD kernel choose ever higher orders, from the fastest."""
 
 SEWN_DIRECTLY: Final = 5e-4
 """mm; a profile that stays nearer to the opening's boundary than this is sewn to it directly."""

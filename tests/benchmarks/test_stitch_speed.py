@@ -21,7 +21,7 @@ from wrinkle_cad import settings
 from wrinkle_cad.cad.exchange.read import read_cad
 from wrinkle_cad.cad.exchange.shapes import Part
 from wrinkle_cad.cad.exchange.write import write_step
-from wrinkle_cad.cad.kernel import topology as kernel
+from wrinkle_cad.cad.kernel.topology import faces_of
 from wrinkle_cad.cad.upper import carve as carving
 from wrinkle_cad.cad.upper import split as splitting
 from wrinkle_cad.cad.upper import stitch as stitching
@@ -69,7 +69,7 @@ class BareKernel:
         reader = STEPControl_Reader()
         reader.ReadFile(str(INPUT))
         reader.TransferRoots()
-        face = kernel.faces_of(reader.OneShape())[0]
+        face = faces_of(reader.OneShape())[0]
         projection = BRepOffsetAPI_NormalProjection(face)
         for side in self.sides:
             projection.Add(smooth_edge(side.points))

@@ -12,7 +12,7 @@ from OCP.TopoDS import TopoDS_Edge, TopoDS_Face, TopoDS_Shape
 
 from shoe_examples.rails import rail_points, vamp_rail
 from shoe_examples.upper import sewn, upper_face, upper_panels
-from wrinkle_cad.cad.kernel import topology as kernel
+from wrinkle_cad.cad.kernel.topology import make_compound
 from wrinkle_cad.cad.upper.carve import carve
 from wrinkle_cad.cad.upper.opening import Opening
 from wrinkle_cad.cad.upper.profiles import profile_curves
@@ -57,7 +57,7 @@ def gaping_panels(gap: float) -> TopoDS_Shape:
     move = gp_Trsf()
     move.SetTranslation(gp_Vec(0.0, gap, 0.0))
     moved = BRepBuilderAPI_Transform(second, move, True).Shape()
-    return kernel.make_compound([first, moved])
+    return make_compound([first, moved])
 
 
 def lens_rail(sign: float) -> TopoDS_Edge:

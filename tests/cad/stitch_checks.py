@@ -14,7 +14,16 @@ from OCP.TopoDS import TopoDS_Shape
 
 from wrinkle_cad.cad.exchange.shapes import Part
 from wrinkle_cad.cad.exchange.write import write_step, write_stl
-from wrinkle_cad.cad.kernel import topology as kernel
+from wrinkle_cad.cad.kernel.measures import is_valid, length_of
+from wrinkle_cad.cad.kernel.topology import (
+    faces_of,
+    free_edges,
+    make_compound,
+    make_vertex,
+    shells_of,
+    vertex_point,
+    vertices_of,
+)
 from wrinkle_cad.cad.upper.projection import UpperFaces
 from wrinkle_cad.cad.upper.stitch import Stitched
 
@@ -30,24 +39,24 @@ def reread(path: Path) -> TopoDS_Shape:
 
 
 def border_length(shape: TopoDS_Shape) -> float:
-    return sum(kernel.length_of(edge) for edge in kernel.free_edges(shape))
+    return sum(length_of(edge) for edge in free_edges(shape))
 
 
 def shell_faults(shape: TopoDS_Shape, face_count: int, upper: TopoDS_Shape) -> list[str]:
     """What is wrong with a shape that should be one shell with the border of the upper."""
     faults = []
-    if len(kernel.shells_of(shape)) != 1:
-        faults.append(f"{len(kernel.shells_of(shape))} shells")
-    if len(kernel.faces_of(shape)) != face_count:
-        faults.append(f"{len(kernel.faces_of(shape))} faces of {face_count}")
-    if not kernel.is_valid(shape):
+    if len(shells_of(shape)) != 1:
+        faults.append(f"{len(shells_of(shape))} shells")
+    if len(faces_of(shape)) != face_count:
+        faults.append(f"{len(faces_of(shape))} faces of {face_count}")
+    if not is_valid(shape):
         faults.append("not valid")
     if abs(border_length(shape) - border_length(upper)) > 1e-3:
         faults.append(f"border {border_length(shape)} of {border_length(upper)} mm")
-    held = kernel.make_compound(kernel.free_edges(upper))
-    for vertex in kernel.vertices_of(kernel.make_compound(kernel.free_edges(shape))):
+    held = make_compound(free_edges(upper))
+    for vertex in vertices_of(make_compound(free_edges(shape))):
         if BRepExtrema_DistShapeShape(vertex, held).Value() > 1e-3:
-            faults.append(f"border at {kernel.vertex_point(vertex)}")
+            faults.append(f"border at {vertex_point(vertex)}")
     return faults
 
 
@@ -74,12 +83,12 @@ def stl_faults(
     if count.max() > 2:
         faults.append(f"{int((count > 2).sum())} edges with more than two triangles")
     border = mesh.vertices[edges[count == 1]]
-    held = kernel.make_compound(kernel.free_edges(upper))
+    held = make_compound(free_edges(upper))
     astray = [
         pair
         for pair in border
-        if kernel.free_edges(upper) == []
-        or BRepExtrema_DistShapeShape(kernel.make_vertex(pair.mean(axis=0)), held).Value()
+        if free_edges(upper) == []
+        or BRepExtrema_DistShapeShape(make_vertex(pair.mean(axis=0)), held).Value()
         > 2.0 * tolerance
     ]
     if astray:

@@ -13,11 +13,14 @@ from OCP.IFSelect import IFSelect_RetDone
 from OCP.STEPControl import STEPControl_Reader
 from OCP.TopoDS import TopoDS_Edge, TopoDS_Shape, TopoDS_Shell
 
+from tests.cad.measuring import area_of
 from wrinkle_cad.cad.exchange.shapes import Part
 from wrinkle_cad.cad.exchange.write import write_step
 from wrinkle_cad.cad.faces.shell import build_shell
-from wrinkle_cad.cad.kernel import topology as kernel
+from wrinkle_cad.cad.kernel.curves import edge_curve
+from wrinkle_cad.cad.kernel.measures import is_valid, tolerance_of
 from wrinkle_cad.cad.kernel.splines import make_curve
+from wrinkle_cad.cad.kernel.topology import faces_of, free_edges, shells_of
 from wrinkle_cad.cad.rail.directrix import Directrix, make_directrix, orient_alike, sample_directrix
 from wrinkle_cad.strip.curve.sampling import Samples
 from wrinkle_cad.strip.triangulation import Triangulation, triangulate
@@ -112,23 +115,23 @@ def faults_after_step(
     """What a STEP file loses of a shell; empty if nothing."""
     found = reread(shell, path)
     counts = [
-        (len(kernel.shells_of(shape)), len(kernel.faces_of(shape)), len(kernel.free_edges(shape)))
+        (len(shells_of(shape)), len(faces_of(shape)), len(free_edges(shape)))
         for shape in (shell, found)
     ]
-    areas = [kernel.area_of(shape, relative_error=1e-8) for shape in (shell, found)]
-    faults = [] if kernel.is_valid(found) else ["not valid"]
+    areas = [area_of(shape, relative_error=1e-8) for shape in (shell, found)]
+    faults = [] if is_valid(found) else ["not valid"]
     if counts[0] != counts[1] or counts[1][0] != 1:
         faults.append(f"shells, faces, free edges: {counts}")
     if abs(areas[0] - areas[1]) > area_error * areas[0]:
         faults.append(f"areas {areas}")
-    if kernel.tolerance_of(found) > tolerance:
-        faults.append(f"edge tolerance {kernel.tolerance_of(found)}")
+    if tolerance_of(found) > tolerance:
+        faults.append(f"edge tolerance {tolerance_of(found)}")
     return faults
 
 
 def points_on_edge(edge: TopoDS_Edge, count: int = 9) -> tuple[Floats, Floats]:
     """Parameters (count,) of an edge's own curve, and the points (count, 3) there."""
-    curve = kernel.edge_curve(edge)
+    curve = edge_curve(edge)
     parameters = np.linspace(curve.FirstParameter(), curve.LastParameter(), count)
     points = [curve.Value(float(u)) for u in parameters]
     return parameters, np.array([(at.X(), at.Y(), at.Z()) for at in points])

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from wrinkle_cad.cad.build123d_objects import sketch_from_outline, to_build123d
-from wrinkle_cad.cad.kernel import topology as kernel
+from wrinkle_cad.cad.kernel.topology import make_compound, shells_of
 from wrinkle_cad.errors import CadError, InputError
 
 from .makers import box, line
@@ -16,14 +16,14 @@ SQUARE = [(0.0, 0.0), (2.0, 0.0), (2.0, 2.0), (0.0, 2.0)]
 
 
 def test_a_shape_becomes_the_class_of_its_kind_with_label_and_color() -> None:
-    (shell,) = kernel.shells_of(box())
+    (shell,) = shells_of(box())
     found = to_build123d(shell, label="Führung (1)", color=(1.0, 0.5, 0.0))
     assert isinstance(found, b3d.Shell)
     assert found.wrapped.IsSame(shell)
     assert found.label == "Führung (1)"
     assert tuple(found.color) == pytest.approx((1.0, 0.5, 0.0, 1.0))
     assert isinstance(to_build123d(line((0, 0, 0), (1, 0, 0))), b3d.Edge)
-    assert isinstance(to_build123d(kernel.make_compound([shell])), b3d.Compound)
+    assert isinstance(to_build123d(make_compound([shell])), b3d.Compound)
 
 
 def test_a_color_may_be_a_name() -> None:

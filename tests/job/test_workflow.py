@@ -130,8 +130,10 @@ PAIRS = [
 def test_real_rails_become_a_valid_shell_that_survives_its_file(
     realdata: Path, tmp_path: Path, file: str, p: str, q: str
 ) -> None:
+    from tests.cad.measuring import area_of
     from wrinkle_cad.cad.exchange.read import read_cad
-    from wrinkle_cad.cad.kernel.topology import area_of, faces_of, is_valid, tolerance_of
+    from wrinkle_cad.cad.kernel.measures import is_valid, tolerance_of
+    from wrinkle_cad.cad.kernel.topology import faces_of
 
     done = run(Job(input=realdata / file, output_dir=tmp_path, p=p, q=q))
     again = read_cad(next(path for path in done.outputs if path.suffix == ".step"))

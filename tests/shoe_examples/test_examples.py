@@ -14,10 +14,12 @@ from matplotlib import image
 
 from shoe_examples.rails import rail_points
 from shoe_examples.upper import section_poles, upper_face
+from tests.cad.measuring import bounding_box
 from tests.cad.stitch_checks import freecad_report, reread, shell_faults
 from wrinkle_cad.cad.exchange.read import read_cad
 from wrinkle_cad.cad.exchange.write import write_step
-from wrinkle_cad.cad.kernel import topology as kernel
+from wrinkle_cad.cad.kernel.measures import is_valid
+from wrinkle_cad.cad.kernel.topology import free_edges
 from wrinkle_cad.job.job import make_job
 from wrinkle_cad.job.outcome import JobDone
 from wrinkle_cad.job.workflow import run_job
@@ -45,13 +47,13 @@ def folder_of(tmp_path_factory: pytest.TempPathFactory) -> Callable[[str], Path]
 
 def test_the_upper_is_a_last_of_size_42() -> None:
     face = upper_face()
-    low, high = kernel.bounding_box(face)
+    low, high = bounding_box(face)
     assert len(section_poles()) >= 8
     assert high[0] - low[0] == pytest.approx(280.0, abs=4.0)
     assert high[1] - low[1] == pytest.approx(100.0, abs=3.0)
-    assert kernel.is_valid(face)
-    assert len(kernel.free_edges(face)) == 2
-    smaller = kernel.bounding_box(upper_face(39))
+    assert is_valid(face)
+    assert len(free_edges(face)) == 2
+    smaller = bounding_box(upper_face(39))
     assert smaller[1][0] - smaller[0][0] == pytest.approx((high[0] - low[0]) * 39 / 42)
 
 
@@ -111,9 +113,7 @@ def test_the_committed_input_is_what_its_script_builds(name: str, tmp_path: Path
     assert [shape.name for shape in fresh.shapes] == [shape.name for shape in kept.shapes]
     for new, old in zip(fresh.shapes, kept.shapes, strict=True):
         assert new.measure == pytest.approx(old.measure, rel=1e-9)
-        assert np.allclose(
-            kernel.bounding_box(new.shape), kernel.bounding_box(old.shape), atol=1e-6
-        )
+        assert np.allclose(bounding_box(new.shape), bounding_box(old.shape), atol=1e-6)
 
 
 @pytest.mark.parametrize("name", EXAMPLES)

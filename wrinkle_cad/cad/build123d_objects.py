@@ -11,7 +11,9 @@ from OCP.BRepBuilderAPI import BRepBuilderAPI_MakeFace, BRepBuilderAPI_MakePolyg
 from OCP.gp import gp_Pln, gp_Pnt
 from OCP.TopoDS import TopoDS_Face, TopoDS_Shape
 
-from wrinkle_cad.cad.kernel.topology import kernel_step, make_compound, occ_color
+from wrinkle_cad.cad.kernel.colors import occ_color
+from wrinkle_cad.cad.kernel.steps import kernel_step
+from wrinkle_cad.cad.kernel.topology import make_compound
 from wrinkle_cad.errors import CadError, InputError
 
 if TYPE_CHECKING:

@@ -203,13 +203,15 @@ class TriangulatedStrip:
     @cached_property
     def _measured_area(self) -> tuple[float, float]:
         """The area as exactly as it can be had: a sound strip does not fail for its last digits."""
-        from wrinkle_cad.cad.kernel.topology import area_of
+        from wrinkle_cad.cad.kernel.measures import face_areas
+        from wrinkle_cad.cad.kernel.topology import faces_of
 
+        faces = faces_of(self.topods_shell())
         *tried, coarsest = settings.AREA_RELATIVE_ERRORS
         for error in tried:
             with contextlib.suppress(CadError):
-                return area_of(self.topods_shell(), relative_error=error), error
-        return area_of(self.topods_shell(), relative_error=coarsest), coarsest
+                return sum(face_areas(faces, relative_error=error)), error
+        return sum(face_areas(faces, relative_error=coarsest)), coarsest
 
     def _rail_lengths(self) -> tuple[float, float]:
         if self.surface == "cones":

@@ -15,7 +15,7 @@ from wrinkle_cad.errors import InputError
 HOLD = """
 import sys, time
 from pathlib import Path
-from wrinkle_cad.batch.lock import locked_folder
+from wrinkle_cad.batch.folder.lock import locked_folder
 with locked_folder(Path(sys.argv[1])):
     print("held", flush=True)
     time.sleep(60)

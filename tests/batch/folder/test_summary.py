@@ -10,7 +10,7 @@ from urllib.parse import unquote
 
 import pytest
 
-from tests.batch.test_manifest import RECORD
+from tests.batch.folder.test_manifest import RECORD
 from wrinkle_cad.batch.folder.events import BatchSummary
 from wrinkle_cad.batch.folder.index_page import index_page, write_index_page
 from wrinkle_cad.batch.folder.manifest import OutputFile

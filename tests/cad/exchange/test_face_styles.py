@@ -17,19 +17,19 @@ from OCP.TopoDS import TopoDS_Face, TopoDS_Shape
 from OCP.XCAFDoc import XCAFDoc_ColorSurf, XCAFDoc_DocumentTool
 
 from tests.cad.makers import box
+from tests.cad.measuring import area_of, bounding_box
 from wrinkle_cad.cad.exchange.read import read_cad
 from wrinkle_cad.cad.exchange.shapes import FaceStyle, NamedShape, Part
 from wrinkle_cad.cad.exchange.step.bytes import Header
 from wrinkle_cad.cad.exchange.write import step_bytes, write_step
-from wrinkle_cad.cad.exchange.xde import TDF_LabelSequence, new_document, set_name, set_parameter
+from wrinkle_cad.cad.exchange.xde import new_document, set_name, set_parameter
+from wrinkle_cad.cad.kernel.measures import is_valid
 from wrinkle_cad.cad.kernel.topology import (
-    area_of,
-    bounding_box,
     faces_of,
-    is_valid,
     make_compound,
     shells_of,
 )
+from wrinkle_cad.cad.kernel.versions import LabelList
 from wrinkle_cad.errors import CadError
 
 RED, BLUE, GREY = (1.0, 0.0, 0.0), (0.0, 0.0, 1.0), (0.5, 0.5, 0.5)
@@ -95,7 +95,7 @@ def colors_seen(path: Path) -> list[Counter[object]]:
     reader.SetColorMode(True)
     reader.ReadFile(str(path))
     reader.Transfer(document)
-    labels = TDF_LabelSequence()
+    labels = LabelList()
     shapes = XCAFDoc_DocumentTool.ShapeTool_s(document.Main())
     colors = XCAFDoc_DocumentTool.ColorTool_s(document.Main())
     shapes.GetFreeShapes(labels)

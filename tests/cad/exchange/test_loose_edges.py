@@ -10,7 +10,8 @@ from OCP.TopoDS import TopoDS_Shape
 
 from tests.cad.makers import arc, line
 from wrinkle_cad.cad.exchange.loose_edges import chain_edges
-from wrinkle_cad.cad.kernel.topology import edges_of, kind_name, length_of
+from wrinkle_cad.cad.kernel.measures import length_of
+from wrinkle_cad.cad.kernel.topology import edges_of, kind_name
 
 
 def described(shapes: list[TopoDS_Shape]) -> list[tuple[str, int]]:

@@ -14,11 +14,11 @@ from OCP.IGESControl import IGESControl_Writer
 from OCP.TopLoc import TopLoc_Location
 
 from tests.cad.makers import HEAD, PRODUCT, TAIL, UNITS, arc, box, curves_text, line, polyline
+from tests.cad.measuring import bounding_box
 from wrinkle_cad.cad.exchange.read import read_cad
 from wrinkle_cad.cad.exchange.shapes import CadFile, Part
 from wrinkle_cad.cad.exchange.write import brep_bytes, write_step
 from wrinkle_cad.cad.kernel.topology import (
-    bounding_box,
     faces_of,
     make_compound,
     make_vertex,
@@ -288,11 +288,11 @@ def test_the_kernel_keeps_off_standard_output(tmp_path: Path) -> None:
     (tmp_path / "a.step").write_text(curves_text())
     code = (
         "import sys; from pathlib import Path\n"
-        "from wrinkle_cad.cad.read import read_cad\n"
+        "from wrinkle_cad.cad.exchange.read import read_cad\n"
         "assert 'OCP' not in sys.modules\n"
         "path = Path(sys.argv[1])\n"
         "shape = read_cad(path).shapes[0].shape\n"
-        "from wrinkle_cad.cad.write import Part, write_step, write_stl\n"
+        "from wrinkle_cad.cad.exchange.write import Part, write_step, write_stl\n"
         "write_step(path.with_name('b.step'), [Part(shape, 'P', (1, 0, 0))])\n"
         "assert 'build123d' not in sys.modules and 'numba' not in sys.modules\n"
     )

@@ -16,17 +16,16 @@ from OCP.Interface import Interface_Static
 from OCP.TopoDS import TopoDS_Compound, TopoDS_Shape
 
 from tests.cad.makers import arc, box, polyline
+from tests.cad.measuring import area_of, bounding_box
 from wrinkle_cad.cad.exchange.read import read_cad
 from wrinkle_cad.cad.exchange.shapes import FaceStyle, Part
 from wrinkle_cad.cad.exchange.step.bytes import Header, encoded
 from wrinkle_cad.cad.exchange.step.names import decoded
 from wrinkle_cad.cad.exchange.write import brep_bytes, step_bytes, stl_bytes, write_step, write_stl
+from wrinkle_cad.cad.kernel.measures import is_valid
 from wrinkle_cad.cad.kernel.topology import (
-    area_of,
-    bounding_box,
     edges_of,
     faces_of,
-    is_valid,
     make_compound,
     make_vertex,
     shells_of,
@@ -141,12 +140,12 @@ def test_a_located_compound_is_written_in_world_coordinates_without_an_assembly(
 
 BYTES = """
 import hashlib, sys
-from tests.cad.test_write import parts_of_every_kind
-from wrinkle_cad.cad.step_bytes import Header
-from wrinkle_cad.cad.write import step_bytes, stl_bytes
-from wrinkle_cad.cad.shapes import Part
+from tests.cad.exchange.test_write import parts_of_every_kind
+from wrinkle_cad.cad.exchange.step.bytes import Header
+from wrinkle_cad.cad.exchange.write import step_bytes, stl_bytes
+from wrinkle_cad.cad.exchange.shapes import Part
 from tests.cad.makers import arc, box
-from tests.cad.test_face_styles import styled
+from tests.cad.exchange.test_face_styles import styled
 orders = {"ab": "ab", "ba": "ba", "b": "b"}[sys.argv[1]]
 ballast = [object() for _ in range(int(sys.argv[2]))]
 other = lambda: [Part(box(3.0), "b", (1, 0, 0)), Part(arc(0.0), "Q"), styled(box())]

@@ -19,6 +19,7 @@ from OCP.TopLoc import TopLoc_Location
 from OCP.TopoDS import TopoDS_Face, TopoDS_Shape
 
 from tests.cad.makers import line, polyline
+from tests.cad.measuring import area_of
 from tests.cad.strips import (
     Strip,
     edge_of,
@@ -30,7 +31,16 @@ from tests.cad.strips import (
     strip_between,
 )
 from wrinkle_cad.cad.faces.shell import build_shell
-from wrinkle_cad.cad.kernel import topology as kernel
+from wrinkle_cad.cad.kernel.curves import edge_curve
+from wrinkle_cad.cad.kernel.measures import is_valid, length_of, tolerance_of
+from wrinkle_cad.cad.kernel.topology import (
+    edges_of,
+    faces_of,
+    free_edges,
+    make_compound,
+    vertex_point,
+    vertices_of,
+)
 from wrinkle_cad.cad.rail.directrix import Directrix, make_directrix, sample_directrix
 from wrinkle_cad.errors import CadError, InputError
 from wrinkle_cad.strip.curve.sampling import Samples
@@ -137,8 +147,8 @@ STRIPS: dict[str, Callable[[], Strip]] = {
 @pytest.mark.parametrize("name", STRIPS)
 def test_a_shell_is_valid_and_a_step_file_keeps_it(name: str, kind: str, tmp_path: Path) -> None:
     shell = STRIPS[name]().shell(kind)
-    assert kernel.is_valid(shell)
-    assert kernel.tolerance_of(shell) <= 1e-5
+    assert is_valid(shell)
+    assert tolerance_of(shell) <= 1e-5
     # At 10 microns the kernel's fixed tolerance is a share of the strip; a flat lens's slivers
     # cross their own chord, which a reader does not restore to the last digit.
     assert faults_after_step(shell, tmp_path / "strip.step", area_error=2e-6) == []
@@ -146,10 +156,8 @@ def test_a_shell_is_valid_and_a_step_file_keeps_it(name: str, kind: str, tmp_pat
 
 def test_the_comparison_after_step_sees_what_is_lost(tmp_path: Path) -> None:
     shell = cylinder_strip().shell()
-    faces = kernel.faces_of(shell)
-    torn = kernel.make_compound(
-        [kernel.make_compound(faces[:20]), kernel.make_compound(faces[22:])]
-    )
+    faces = faces_of(shell)
+    torn = make_compound([make_compound(faces[:20]), make_compound(faces[22:])])
     assert faults_after_step(torn, tmp_path / "torn.step") != []
 
 
@@ -177,10 +185,10 @@ def test_facets_are_the_triangles(seed: int) -> None:
     strip = wavy_strip(seed)
     shell = strip.shell("facets")
     triangulation = strip.triangulation
-    assert len(kernel.faces_of(shell)) == len(triangulation.steps)
-    assert kernel.area_of(shell) == pytest.approx(triangulation.area, rel=1e-12)
-    assert len(kernel.free_edges(shell)) == len(triangulation.steps) + 2
-    assert len(kernel.vertices_of(shell)) == len(triangulation.p) + len(triangulation.q)
+    assert len(faces_of(shell)) == len(triangulation.steps)
+    assert area_of(shell) == pytest.approx(triangulation.area, rel=1e-12)
+    assert len(free_edges(shell)) == len(triangulation.steps) + 2
+    assert len(vertices_of(shell)) == len(triangulation.p) + len(triangulation.q)
 
 
 def distance_to(rail: Directrix, point: np.ndarray) -> float:
@@ -198,11 +206,11 @@ def distance_to(rail: Directrix, point: np.ndarray) -> float:
 def test_the_banks_of_cones_are_the_rails_themselves(name: str) -> None:
     strip = STRIPS[name]()
     banks, others = 0.0, 0
-    for edge in kernel.free_edges(strip.shell()):
+    for edge in free_edges(strip.shell()):
         _, points = points_on_edge(edge)
         gaps = [max(distance_to(rail, at) for at in points) for rail in (strip.p, strip.q)]
         if min(gaps) < 1e-9:
-            banks += kernel.length_of(edge)
+            banks += length_of(edge)
         else:
             others += 1
     assert banks == pytest.approx(strip.p.length + strip.q.length, rel=1e-9)
@@ -211,7 +219,7 @@ def test_the_banks_of_cones_are_the_rails_themselves(name: str) -> None:
 
 def test_the_banks_of_facets_are_chords() -> None:
     strip = STRIPS["wavy"]()
-    middles = [points_on_edge(edge)[1][4] for edge in kernel.free_edges(strip.shell("facets"))]
+    middles = [points_on_edge(edge)[1][4] for edge in free_edges(strip.shell("facets"))]
     gaps = [min(distance_to(rail, at) for rail in (strip.p, strip.q)) for at in middles]
     # Within the chord tolerance, but for the two end bridges.
     assert 1e-3 < sorted(gaps)[-3] <= 0.05
@@ -224,7 +232,7 @@ def test_normals_look_to_where_triangles_are_counter_clockwise(name: str, kind: 
     triangulation = strip.triangulation
     corners = np.vstack((triangulation.p, triangulation.q))[triangulation.triangles]
     across = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
-    faces = kernel.faces_of(strip.shell(kind, is_merged=False))
+    faces = faces_of(strip.shell(kind, is_merged=False))
     assert len(faces) == len(across)
     for face, expected in zip(faces, across, strict=True):
         assert (normals_of(face) @ expected > 0.0).all()
@@ -234,7 +242,7 @@ def test_normals_look_to_where_triangles_are_counter_clockwise(name: str, kind: 
 def test_neighbours_run_their_shared_edge_opposite_ways(kind: str) -> None:
     for name in ("wavy", "lens", "wire"):
         ways: dict[int, list[object]] = {}
-        for face in kernel.faces_of(STRIPS[name]().shell(kind)):
+        for face in faces_of(STRIPS[name]().shell(kind)):
             for edge in b3d.Face(face).edges():
                 if not BRep_Tool.Degenerated_s(edge.wrapped):
                     ways.setdefault(hash(edge.wrapped), []).append(edge.wrapped.Orientation())
@@ -246,7 +254,7 @@ def test_neighbours_run_their_shared_edge_opposite_ways(kind: str) -> None:
 def test_a_cylinder_comes_nearer_to_its_area_with_cones_than_with_facets() -> None:
     area = math.radians(140.0) * 20.0 * 30.0
     strip = cylinder_strip()
-    cones, facets = (abs(kernel.area_of(strip.shell(kind)) - area) for kind in KINDS)
+    cones, facets = (abs(area_of(strip.shell(kind)) - area) for kind in KINDS)
     assert cones < facets / 10.0
 
 
@@ -254,29 +262,29 @@ def test_steps_with_one_apex_make_one_face() -> None:
     strip = strip_between(line((0, 0, 0), (50, 0, 0)), arc(20.0, 30.0), 0.02)
     steps = strip.triangulation.steps
     runs = 1 + int(np.count_nonzero(np.diff(steps)))
-    assert len(kernel.faces_of(strip.shell())) == runs < len(steps)
-    assert len(kernel.faces_of(strip.shell(is_merged=False))) == len(steps)
-    areas = [kernel.area_of(strip.shell(is_merged=flag)) for flag in (True, False)]
+    assert len(faces_of(strip.shell())) == runs < len(steps)
+    assert len(faces_of(strip.shell(is_merged=False))) == len(steps)
+    areas = [area_of(strip.shell(is_merged=flag)) for flag in (True, False)]
     assert areas[0] == pytest.approx(areas[1], rel=1e-12)
 
 
 @pytest.mark.parametrize("name", ["wavy", "wavy rational", "lens", "one straight rail"])
 def test_the_kernels_default_integration_is_good_enough_for_the_area(name: str) -> None:
     shell = STRIPS[name]().shell()
-    assert b3d.Shell(shell).area == pytest.approx(kernel.area_of(shell), rel=1e-6)
+    assert b3d.Shell(shell).area == pytest.approx(area_of(shell), rel=1e-6)
 
 
 def test_no_face_reaches_across_a_break_of_its_rail() -> None:
     kinked = polyline((0, 0, 0), (20, 0, 0), (40, 0, 9), (60, 0, 9))
     shell = strip_between(kinked, line((0, 30, 0), (60, 30, 0))).shell()
-    vertices = {tuple(kernel.vertex_point(at).round(9)) for at in kernel.vertices_of(shell)}
+    vertices = {tuple(vertex_point(at).round(9)) for at in vertices_of(shell)}
     assert {(20.0, 0.0, 0.0), (40.0, 0.0, 9.0)} <= vertices
 
 
 def test_a_kink_inside_an_edge_is_an_edge_of_the_strip() -> None:
     poles = [(0, 0, 0), (10, 0, 0), (20, 0, 0), (30, 0, 0), (40, 0, 9), (50, 0, 0), (60, 0, 0)]
     strip = strip_between(edge_of(poles, 3, inner=(3,)), line((0, 30, 0), (60, 30, 0)))
-    vertices = {tuple(kernel.vertex_point(at).round(9)) for at in kernel.vertices_of(strip.shell())}
+    vertices = {tuple(vertex_point(at).round(9)) for at in vertices_of(strip.shell())}
     assert (30.0, 0.0, 0.0) in vertices
 
 
@@ -285,20 +293,20 @@ def test_rails_that_meet_share_a_vertex() -> None:
         shell = strip_between(*lens_edges()).shell(kind)
         at_ends = [
             point
-            for point in map(kernel.vertex_point, kernel.vertices_of(shell))
+            for point in map(vertex_point, vertices_of(shell))
             if abs(point[0] - 50.0) > 50.0 - 1e-9
         ]
         assert len(at_ends) == 2
-        lengths = [kernel.length_of(edge) for edge in kernel.edges_of(shell)]
+        lengths = [length_of(edge) for edge in edges_of(shell)]
         assert min(length for length in lengths if length > 0.0) > 0.1
 
 
 def test_rails_that_nearly_meet_do_meet() -> None:
     p, q = lens_edges()
-    moved = kernel.edge_curve(q)
+    moved = edge_curve(q)
     moved.SetPole(1, gp_Pnt(0.0, 0.0, 8e-6))
     shell = strip_between(p, BRepBuilderAPI_MakeEdge(moved).Edge()).shell()
-    points = [kernel.vertex_point(vertex) for vertex in kernel.vertices_of(shell)]
+    points = [vertex_point(vertex) for vertex in vertices_of(shell)]
     (start,) = (point for point in points if point[0] < 1e-3)
     assert start.tolist() == pytest.approx([0.0, 0.0, 4e-6], abs=1e-12)
 
@@ -310,12 +318,12 @@ def test_triangles_without_area_are_left_out_and_closed_over(tmp_path: Path) -> 
     strip = given_strip(p, q, [Q_STEP, P_STEP, P_STEP, Q_STEP, P_STEP])
     for kind in KINDS:
         shell = strip.shell(kind)
-        assert len(kernel.faces_of(shell)) == 4
+        assert len(faces_of(shell)) == 4
         # The bridge of 20 mm is replaced by the bank and the bridge of 10 mm each beside it.
-        lengths = [round(kernel.length_of(edge), 6) for edge in kernel.edges_of(shell)]
+        lengths = [round(length_of(edge), 6) for edge in edges_of(shell)]
         assert lengths.count(10.0) == 2
         assert 20.0 not in lengths
-        assert kernel.area_of(shell) == pytest.approx(strip.triangulation.area, rel=1e-12)
+        assert area_of(shell) == pytest.approx(strip.triangulation.area, rel=1e-12)
         assert faults_after_step(shell, tmp_path / "strip.step") == []
 
 
@@ -341,17 +349,17 @@ def test_a_thin_curved_face_is_left_out_and_its_rail_stands_for_the_chord(tmp_pa
         for side, z in ((-1.0, 0.3), (1.0, 0.6))
     )
     shell = strip_between(p, q, 3e-6).shell()
-    assert 1.1e-7 < kernel.tolerance_of(shell) <= 5.2e-6
+    assert 1.1e-7 < tolerance_of(shell) <= 5.2e-6
     assert faults_after_step(shell, tmp_path / "strip.step", tolerance=1e-5) == []
 
 
 def test_slivers_between_a_rail_and_its_chord_are_closed() -> None:
     strip = strip_between(*lens_edges(), 0.2)
     shell = strip.shell()
-    banks = kernel.length_of(kernel.make_compound(kernel.free_edges(shell)))
+    banks = length_of(make_compound(free_edges(shell)))
     assert banks == pytest.approx(strip.p.length + strip.q.length, rel=1e-9)
-    thinnest = min(kernel.area_of(face) for face in kernel.faces_of(shell))
-    assert 0.0 < thinnest < 0.01 * kernel.area_of(shell)
+    thinnest = min(area_of(face) for face in faces_of(shell))
+    assert 0.0 < thinnest < 0.01 * area_of(shell)
 
 
 def test_a_sliver_over_several_spans_is_cut_at_its_knots(tmp_path: Path) -> None:
@@ -391,7 +399,7 @@ def test_a_mesh_of_the_shell_has_one_border(name: str, kind: str) -> None:
     BRepMesh_IncrementalMesh(shell, 0.05, False, 0.3, False)
     triangles: list[tuple[int, ...]] = []
     numbers: dict[tuple[float, ...], int] = {}
-    for face in kernel.faces_of(shell):
+    for face in faces_of(shell):
         mesh = BRep_Tool.Triangulation_s(face, TopLoc_Location())
         for i in range(1, mesh.NbTriangles() + 1):
             nodes = [mesh.Node(at) for at in mesh.Triangle(i).Get()]
@@ -425,8 +433,8 @@ def test_freecad_reads_one_valid_shell(tmp_path: Path, freecadcmd: str) -> None:
             shell = make().shell(kind)
             paths.append(tmp_path / f"{name} {kind}.step")
             assert faults_after_step(shell, paths[-1], area_error=2e-6) == []
-            border = sum(map(kernel.length_of, kernel.free_edges(shell)))
-            expected.append((1, len(kernel.faces_of(shell)), True, border))
+            border = sum(map(length_of, free_edges(shell)))
+            expected.append((1, len(faces_of(shell)), True, border))
     found = freecad_judgement(freecadcmd, paths, tmp_path)
     assert [row[:3] for row in found] == [row[:3] for row in expected]
     assert [row[3] for row in found] == pytest.approx([row[3] for row in expected], rel=1e-6)
@@ -447,7 +455,7 @@ def test_real_rails_make_valid_shells(
 ) -> None:
     shape = TopoDS_Shape()
     assert BRepTools.Read_s(shape, str(realdata / f"{file}_guides.brep"), BRep_Builder())
-    edges = kernel.edges_of(shape)
+    edges = edges_of(shape)
     strip = strip_between(edges[i], edges[j], tolerance)
     for kind in KINDS:
         assert faults_after_step(strip.shell(kind), tmp_path / "strip.step", area_error=1e-9) == []

@@ -15,7 +15,8 @@ from OCP.TopoDS import TopoDS_Edge, TopoDS_Shape
 
 from tests.cad.makers import box, line, polyline
 from tests.cad.strips import edge_of, random_edge
-from wrinkle_cad.cad.kernel import topology as kernel
+from wrinkle_cad.cad.kernel.curves import edge_curve
+from wrinkle_cad.cad.kernel.topology import as_edge, edges_of, faces_of, make_compound, make_vertex
 from wrinkle_cad.cad.rail.directrix import (
     Directrix,
     check_distinct,
@@ -55,7 +56,7 @@ def test_an_edge_makes_a_rail_as_long_as_itself() -> None:
 
 def test_points_are_those_of_the_kernels_curves() -> None:
     edges = [random_edge(np.random.default_rng(i), 0.0, i, is_rational=i % 2 == 0) for i in (2, 5)]
-    joint = kernel.edge_curve(edges[0]).EndPoint()
+    joint = edge_curve(edges[0]).EndPoint()
     edges[1] = edge_of([(joint.X(), joint.Y(), joint.Z()), (90, 9, 9), (99, 0, 5)], 2, [1, 3, 1])
     rail = make_directrix(edges)
     for curve in rail.curves:
@@ -97,12 +98,12 @@ def test_a_list_keeps_its_order_even_backwards() -> None:
 
 
 def test_a_reversed_edge_runs_backwards() -> None:
-    edge = kernel.as_edge(line(A, B).Reversed())
+    edge = as_edge(line(A, B).Reversed())
     assert ends(make_directrix(edge)) == [list(B), list(A)]
 
 
 def test_edges_of_a_compound_are_put_in_order() -> None:
-    rail = make_directrix(kernel.make_compound([line(C, B), line(C, D), line(B, A)]))
+    rail = make_directrix(make_compound([line(C, B), line(C, D), line(B, A)]))
     assert {tuple(end) for end in ends(rail)} == {A, D}
     assert rail.length == 13.0
 
@@ -211,11 +212,11 @@ def test_a_curve_is_sampled_within_the_tolerance() -> None:
         (np.array([A, (1.0, math.nan, 0.0)]), "NaN or infinite"),
         (np.array([A, B, B, C]), "points 2 and 3 are 0 mm apart"),
         (line((0.0, 0.0, 0.0), (9e-7, 0.0, 0.0)), "length 9e-07 mm"),
-        (kernel.make_vertex(A), "found a vertex"),
+        (make_vertex(A), "found a vertex"),
         (box(), "found a solid"),
-        (kernel.faces_of(box())[0], "found a face"),
-        (kernel.make_compound(kernel.faces_of(box())), "found a compound"),
-        (kernel.make_compound([]), "no curve in it"),
+        (faces_of(box())[0], "found a face"),
+        (make_compound(faces_of(box())), "found a compound"),
+        (make_compound([]), "no curve in it"),
     ],
 )
 def test_what_is_no_rail_is_refused(source: object, message: str) -> None:
@@ -335,7 +336,7 @@ def test_a_tie_is_left_as_it_is() -> None:
 
 def test_one_curve_given_twice_is_refused_however_it_is_run() -> None:
     p = make_directrix(edge_of(CURVE, 3), name="one")
-    elevated = kernel.edge_curve(edge_of(CURVE, 3))
+    elevated = edge_curve(edge_of(CURVE, 3))
     elevated.IncreaseDegree(6)
     again = make_directrix(BRepBuilderAPI_MakeEdge(elevated).Edge(), name="two")
     for q in (p, again, reversed_directrix(p)):
@@ -367,7 +368,7 @@ def test_the_coincident_pair_of_a_real_file_is_refused(realdata: Path) -> None:
     shape = TopoDS_Shape()
     assert BRepTools.Read_s(shape, str(realdata / "spiralwing_guides.brep"), BRep_Builder())
     first, second, third = (
-        make_directrix(edge, name=str(i)) for i, edge in enumerate(kernel.edges_of(shape), start=1)
+        make_directrix(edge, name=str(i)) for i, edge in enumerate(edges_of(shape), start=1)
     )
     check_distinct(first, second)
     check_distinct(second, third)

@@ -13,8 +13,15 @@ from OCP.TopoDS import TopoDS_Shape
 from shoe_examples.rails import feather_rail, vamp_rail
 from shoe_examples.upper import upper_panels
 from tests.cad.shoes import gaping_panels, lens_rail, opening, rails, shoe, two_panels
-from wrinkle_cad.cad.kernel import topology as kernel
-from wrinkle_cad.cad.kernel.connectivity import edge_ends
+from wrinkle_cad.cad.kernel.curves import edge_ends
+from wrinkle_cad.cad.kernel.measures import is_valid, length_of, tolerance_of
+from wrinkle_cad.cad.kernel.topology import (
+    edges_of,
+    faces_of,
+    free_edges,
+    make_compound,
+    make_vertex,
+)
 from wrinkle_cad.cad.rail.directrix import make_directrix, reversed_directrix
 from wrinkle_cad.cad.upper.carve import carve, carve_shape
 from wrinkle_cad.cad.upper.outline import faded_margin
@@ -29,7 +36,7 @@ def exact_area(shape: TopoDS_Shape) -> float:
 
 
 def distance(point: np.ndarray, shape: TopoDS_Shape) -> float:
-    return float(BRepExtrema_DistShapeShape(kernel.make_vertex(point), shape).Value())
+    return float(BRepExtrema_DistShapeShape(make_vertex(point), shape).Value())
 
 
 def test_areas_of_body_and_removed_part_add_up() -> None:
@@ -42,20 +49,20 @@ def test_areas_of_body_and_removed_part_add_up() -> None:
 
 def test_the_body_keeps_the_uppers_surface_and_its_own_border() -> None:
     body = opening().body_shape
-    assert kernel.is_valid(body)
-    (face,) = kernel.faces_of(body)
+    assert is_valid(body)
+    (face,) = faces_of(body)
     assert face.Orientation() == shoe().Orientation()
     # Feather edge, collar, and the opening's four sides.
-    assert len(kernel.free_edges(body)) == 2 + 4
+    assert len(free_edges(body)) == 2 + 4
 
 
 def test_sides_are_edges_of_the_body_in_a_row() -> None:
     carved = carve(two_panels(), *rails(), margin=4.0)
-    border = [kernel.length_of(edge) for edge in kernel.free_edges(carved.body_shape)]
+    border = [length_of(edge) for edge in free_edges(carved.body_shape)]
     for edges in (carved.p_edges, carved.q_edges):
         assert len(edges) == 2
         assert np.linalg.norm(edge_ends(edges[0])[1] - edge_ends(edges[1])[0]) < 1e-6
-        assert all(min(abs(kernel.length_of(e) - b) for b in border) < 1e-9 for e in edges)
+        assert all(min(abs(length_of(e) - b) for b in border) < 1e-9 for e in edges)
     start = edge_ends(carved.p_edges[0])[0]
     assert np.linalg.norm(start - carved.rails[0].points[0]) < 1e-5
 
@@ -68,12 +75,12 @@ def test_without_margin_the_sides_are_the_rails() -> None:
     ):
         side = make_directrix(list(edges))
         points = side.point_at(np.linspace(*side.interval, 40))
-        held = kernel.make_compound(curve_edges(rail))
+        held = make_compound(curve_edges(rail))
         assert max(distance(point, held) for point in points) < 1e-4
 
 
 def test_the_margin_is_held_in_the_middle_and_fades_to_nothing() -> None:
-    held = kernel.make_compound(curve_edges(opening().rail_p_curve))
+    held = make_compound(curve_edges(opening().rail_p_curve))
     side = make_directrix(list(opening().p_edges))
     gaps = [distance(point, held) for point in side.point_at(np.linspace(*side.interval, 41))]
     assert gaps[0] < 1e-5
@@ -106,7 +113,7 @@ def test_rails_that_meet_leave_an_opening_without_ends() -> None:
     carved = carve(shoe(), lens_rail(1.0), lens_rail(-1.0), margin=2.0)
     assert carved.start_edges == ()
     assert carved.end_edges == ()
-    assert kernel.is_valid(carved.body_shape)
+    assert is_valid(carved.body_shape)
 
 
 def test_a_strip_may_end_on_the_border_and_part_the_upper_on_request() -> None:
@@ -116,26 +123,26 @@ def test_a_strip_may_end_on_the_border_and_part_the_upper_on_request() -> None:
     carved = carve(shoe(), *ends, margin=3.0, allow_split=True)
     assert carved.ends_on_border == (True, True)
     assert carved.body_count == 2
-    feather = max(kernel.free_edges(shoe()), key=kernel.length_of)
+    feather = max(free_edges(shoe()), key=length_of)
     for edge in (*carved.start_edges, *carved.end_edges):
         assert max(distance(end, feather) for end in edge_ends(edge)) < 1e-5
 
 
 def test_faces_that_are_not_sewn_are_joined_and_wide_gaps_stay() -> None:
-    loose = kernel.make_compound(upper_panels((0.0, 10.0, 20.0)))
-    assert len(kernel.free_edges(loose)) == 8
-    assert len(kernel.free_edges(carve(loose, *rails()).upper_shape)) == 4
+    loose = make_compound(upper_panels((0.0, 10.0, 20.0)))
+    assert len(free_edges(loose)) == 8
+    assert len(free_edges(carve(loose, *rails()).upper_shape)) == 4
     gaping = carve(gaping_panels(0.3), *rails())
-    assert len(kernel.free_edges(gaping.upper_shape)) == 8
+    assert len(free_edges(gaping.upper_shape)) == 8
     jump = edge_ends(gaping.p_edges[1])[0] - edge_ends(gaping.p_edges[0])[1]
     assert np.linalg.norm(jump) == pytest.approx(0.3, abs=0.02)
     assert gaping.lost_border > 40.0
     closed = carve(gaping_panels(0.3), *rails(), join=0.5)
-    assert len(kernel.free_edges(closed.upper_shape)) == 4
+    assert len(free_edges(closed.upper_shape)) == 4
 
 
 def test_names_and_colours_of_the_panels_stay_with_the_body() -> None:
-    panels = [build123d.Face(panel) for panel in kernel.faces_of(two_panels())]
+    panels = [build123d.Face(panel) for panel in faces_of(two_panels())]
     for panel, label, color in zip(panels, ("inner", "outer"), ("red", "blue"), strict=True):
         panel.label, panel.color = label, build123d.Color(color)
     upper = build123d.Compound(label="Schaft groß", children=panels)
@@ -148,7 +155,7 @@ def test_names_and_colours_of_the_panels_stay_with_the_body() -> None:
         tuple(build123d.Color("blue")),
     ]
     assert isinstance(carved.rail_p, build123d.Edge)
-    assert carved.p.length == pytest.approx(sum(map(kernel.length_of, carved.p_edges)))
+    assert carved.p.length == pytest.approx(sum(map(length_of, carved.p_edges)))
     assert carved.removed.area == pytest.approx(carved.areas[2], rel=1e-4)
 
 
@@ -160,11 +167,11 @@ def test_a_single_face_keeps_its_name_and_colour() -> None:
 
 
 def test_the_upper_is_not_written_to() -> None:
-    before = kernel.tolerance_of(shoe()), len(kernel.edges_of(shoe())), exact_area(shoe())
+    before = tolerance_of(shoe()), len(edges_of(shoe())), exact_area(shoe())
     carve(shoe(), *rails(), margin=1.0)
     assert before == (
-        kernel.tolerance_of(shoe()),
-        len(kernel.edges_of(shoe())),
+        tolerance_of(shoe()),
+        len(edges_of(shoe())),
         exact_area(shoe()),
     )
 
@@ -206,7 +213,7 @@ def test_an_upper_without_faces_is_refused() -> None:
 def test_areas_that_do_not_add_up_are_an_error(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("wrinkle_cad.settings.AREA_BALANCE", -1.0)
     monkeypatch.setattr(
-        "wrinkle_cad.cad.upper.carve.face_areas", lambda faces, bound: [1.0] * len(faces)
+        "wrinkle_cad.cad.upper.carve.face_areas", lambda faces, relative_error: [1.0] * len(faces)
     )
     with pytest.raises(CadError, match="carve the upper - body and removed part have"):
         carve_shape(shoe(), dataclasses.replace(opening().request, margin=0.0))

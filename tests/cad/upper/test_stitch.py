@@ -33,8 +33,17 @@ from tests.cad.stitch_checks import (
 from wrinkle_cad.cad.exchange.read import read_cad
 from wrinkle_cad.cad.exchange.shapes import Part
 from wrinkle_cad.cad.exchange.write import write_step
-from wrinkle_cad.cad.kernel import topology as kernel
 from wrinkle_cad.cad.kernel.connectivity import joined_faces
+from wrinkle_cad.cad.kernel.measures import is_valid, tolerance_of
+from wrinkle_cad.cad.kernel.topology import (
+    as_shell,
+    edges_of,
+    faces_of,
+    make_compound,
+    make_vertex,
+    shells_of,
+    unwrap,
+)
 from wrinkle_cad.cad.rail.directrix import Directrix, make_directrix
 from wrinkle_cad.cad.upper.bands import _distances
 from wrinkle_cad.cad.upper.carve import carve
@@ -56,16 +65,14 @@ def stitched(carved: Opening, **waves: object) -> Stitched:
 def largest_distance(profile: Directrix, shell: TopoDS_Shape) -> float:
     """mm; of points on a profile from the nearest edge of the shell."""
     points = profile.point_at(np.linspace(*profile.interval, 301))
-    held = kernel.make_compound(kernel.edges_of(shell))
-    return max(
-        BRepExtrema_DistShapeShape(kernel.make_vertex(point), held).Value() for point in points
-    )
+    held = make_compound(edges_of(shell))
+    return max(BRepExtrema_DistShapeShape(make_vertex(point), held).Value() for point in points)
 
 
 def points_on(part: TopoDS_Shape, count: int) -> np.ndarray:
     """Seeded points (count, 3), mm, on a part of the upper."""
     random = np.random.default_rng(5)
-    faces, inside = kernel.faces_of(part), UpperFaces(part)
+    faces, inside = faces_of(part), UpperFaces(part)
     found: list[np.ndarray] = []
     while len(found) < count:
         face = faces[random.integers(len(faces))]
@@ -85,10 +92,10 @@ def test_one_wrinkle_becomes_one_valid_shell_with_the_uppers_border() -> None:
     assert (report.free_edges_before, report.free_edges_after) == (2, 2)
     assert report.free_length_after_mm == pytest.approx(report.free_length_before_mm, abs=1e-6)
     assert report.max_edge_tolerance_mm <= 1e-4
-    assert report.max_edge_tolerance_mm == kernel.tolerance_of(whole.shell_shape)
-    expected = 1 + len(kernel.faces_of(strip.topods_shell())) + 2
-    expected += sum(len(kernel.faces_of(band.shell)) for band in report.bands)
-    assert report.face_count == len(kernel.faces_of(whole.shell_shape)) == expected
+    assert report.max_edge_tolerance_mm == tolerance_of(whole.shell_shape)
+    expected = 1 + len(faces_of(strip.topods_shell())) + 2
+    expected += sum(len(faces_of(band.shell)) for band in report.bands)
+    assert report.face_count == len(faces_of(whole.shell_shape)) == expected
     assert abs(report.area_balance_mm2) < 1e-5 * 41_736.0
 
 
@@ -101,7 +108,7 @@ def test_the_rails_of_the_wrinkle_are_the_profiles() -> None:
 
 def test_the_body_is_unchanged_away_from_the_opening() -> None:
     points = points_on(opening().body_shape, 1000)
-    moved = UpperFaces(kernel.make_compound(dict(wrinkle()[1].parts)["body"]))
+    moved = UpperFaces(make_compound(dict(wrinkle()[1].parts)["body"]))
     assert moved.feet(points).distances.max() <= 1e-6
     removed = points_on(opening().removed_shape, 10)
     assert moved.feet(removed).distances.max() > 0.1
@@ -126,7 +133,7 @@ def test_freecad_reads_one_valid_shell(freecadcmd: str, tmp_path: Path) -> None:
 
 def test_a_missing_face_is_noticed(tmp_path: Path) -> None:
     whole = wrinkle()[1]
-    faces = kernel.faces_of(whole.shell_shape)
+    faces = faces_of(whole.shell_shape)
     torn = Stitched(joined_faces(faces[:-1]), whole.report, whole.parts, None)
     assert any("faces of" in fault for fault in step_faults(torn, shoe(), tmp_path))
     assert any("border" in fault for fault in step_faults(torn, shoe(), tmp_path))
@@ -135,9 +142,7 @@ def test_a_missing_face_is_noticed(tmp_path: Path) -> None:
 
 def test_a_face_turned_over_is_noticed(tmp_path: Path) -> None:
     whole = wrinkle()[1]
-    turned = Stitched(
-        kernel.as_shell(whole.shell_shape.Reversed()), whole.report, whole.parts, None
-    )
+    turned = Stitched(as_shell(whole.shell_shape.Reversed()), whole.report, whole.parts, None)
     assert any("normals turned" in fault for fault in stl_faults(turned, shoe(), tmp_path))
 
 
@@ -267,8 +272,8 @@ def test_a_gap_between_faces_is_crossed_and_only_its_width_stays_open() -> None:
     upper = gaping_panels(0.3)
     carved = carve(upper, *rails(), margin=4.0)
     whole = stitched(carved)
-    assert len(kernel.shells_of(whole.shell_shape)) == 1
-    assert kernel.is_valid(whole.shell_shape)
+    assert len(shells_of(whole.shell_shape)) == 1
+    assert is_valid(whole.shell_shape)
     extra = whole.report.free_length_after_mm - (
         whole.report.free_length_before_mm - carved.lost_border
     )
@@ -319,7 +324,7 @@ def test_seam_angles_are_those_of_a_known_bend() -> None:
 
 
 def read_flat_square() -> TopoDS_Shape:
-    return kernel.unwrap(build123d.Face.make_rect(100, 100).moved(build123d.Location((50, 50, 0))))
+    return unwrap(build123d.Face.make_rect(100, 100).moved(build123d.Location((50, 50, 0))))
 
 
 def test_the_result_is_a_build123d_shell_named_as_the_upper() -> None:

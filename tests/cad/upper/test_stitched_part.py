@@ -10,11 +10,12 @@ from OCP.gp import gp_Dir, gp_Pln, gp_Pnt
 from OCP.TopoDS import TopoDS_Shape
 
 from tests.cad.makers import line
+from tests.cad.measuring import bounding_box
 from wrinkle_cad import settings
 from wrinkle_cad.cad.exchange.read import read_cad
 from wrinkle_cad.cad.exchange.shapes import FaceStyle, NamedShape, Part
 from wrinkle_cad.cad.exchange.write import write_step
-from wrinkle_cad.cad.kernel.topology import bounding_box, faces_of, make_compound
+from wrinkle_cad.cad.kernel.topology import faces_of, make_compound
 from wrinkle_cad.cad.upper.carve import carve
 from wrinkle_cad.job.job import Job
 from wrinkle_cad.job.outcome import JobDone

@@ -22,13 +22,8 @@ from OCP.TopAbs import TopAbs_COMPOUND, TopAbs_COMPSOLID
 from OCP.TopoDS import TopoDS_Iterator, TopoDS_Shape
 
 from wrinkle_cad import settings
-from wrinkle_cad.cad.kernel.topology import (
-    edges_of,
-    kind_name,
-    length_of,
-    make_compound,
-    vertices_of,
-)
+from wrinkle_cad.cad.kernel.measures import length_of
+from wrinkle_cad.cad.kernel.topology import edges_of, kind_name, make_compound, vertices_of
 from wrinkle_cad.errors import CadError
 
 from .face_styles import carried_over, styles_in

@@ -8,9 +8,9 @@ from typing import Any
 from OCP.TopoDS import TopoDS_Face, TopoDS_Shape
 
 from wrinkle_cad.cad.build123d_objects import to_build123d
-from wrinkle_cad.cad.kernel import topology as kernel
 from wrinkle_cad.cad.kernel.connectivity import joined_faces
 from wrinkle_cad.cad.kernel.shape_index import ShapeIndex
+from wrinkle_cad.cad.kernel.topology import faces_of
 
 
 def alike(shape: TopoDS_Shape, source: object, label: str = "") -> Any:
@@ -42,11 +42,11 @@ def body_alike(
     children = [child for child in getattr(source, "children", ()) if hasattr(child, "wrapped")]
     if not children:
         return alike(body, source, "body")
-    faces = kernel.faces_of(body)
-    given = ShapeIndex(kernel.faces_of(upper))
+    faces = faces_of(body)
+    given = ShapeIndex(faces_of(upper))
     made = []
     for child in children:
-        own = {given.find(face) for face in kernel.faces_of(child.wrapped)}
+        own = {given.find(face) for face in faces_of(child.wrapped)}
         left: list[TopoDS_Face] = [
             face for face, index in zip(faces, origin, strict=True) if index in own
         ]

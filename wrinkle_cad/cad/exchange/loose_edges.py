@@ -16,7 +16,8 @@ from OCP.TopExp import TopExp
 from OCP.TopoDS import TopoDS_Edge, TopoDS_Shape, TopoDS_Wire
 
 from wrinkle_cad import settings
-from wrinkle_cad.cad.kernel.topology import kernel_step, vertex_point
+from wrinkle_cad.cad.kernel.steps import kernel_step
+from wrinkle_cad.cad.kernel.topology import vertex_point
 
 _NEIGHBOURS: Final = np.array(list(product((-1.0, 0.0, 1.0), repeat=3)))
 

@@ -11,7 +11,7 @@ from OCP.BRep import BRep_Builder
 from OCP.BRepTools import BRepTools
 from OCP.TopoDS import TopoDS_Shape
 
-from wrinkle_cad.cad.kernel.topology import KERNEL_ERRORS
+from wrinkle_cad.cad.kernel.steps import KERNEL_ERRORS
 
 from .collect import listed, take_apart
 from .shapes import CadFile

@@ -12,7 +12,7 @@ from OCP.IFSelect import IFSelect_RetDone
 from OCP.IGESCAFControl import IGESCAFControl_Reader
 
 from wrinkle_cad.cad.exchange.step.text import plain_text
-from wrinkle_cad.cad.kernel.topology import KERNEL_ERRORS
+from wrinkle_cad.cad.kernel.steps import KERNEL_ERRORS
 
 from .collect import listed, take_apart
 from .shapes import CadFile

@@ -17,7 +17,8 @@ from wrinkle_cad.cad.exchange.step.links import link_fault
 from wrinkle_cad.cad.exchange.step.names import curve_names
 from wrinkle_cad.cad.exchange.step.text import check_step, length_units, plain_text, why_no_shape
 from wrinkle_cad.cad.kernel.shape_index import ShapeIndex
-from wrinkle_cad.cad.kernel.topology import KERNEL_ERRORS, as_edge, edges_of, faces_of, kind_name
+from wrinkle_cad.cad.kernel.steps import KERNEL_ERRORS
+from wrinkle_cad.cad.kernel.topology import as_edge, edges_of, faces_of, kind_name
 
 from .collect import Found, listed, take_apart
 from .loose_edges import chain_edges

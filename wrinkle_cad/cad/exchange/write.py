@@ -28,20 +28,15 @@ from wrinkle_cad import settings
 from wrinkle_cad.cad.exchange.step.bytes import Header, face_placeholder, finished_text, placeholder
 from wrinkle_cad.cad.kernel.mesh import binary_stl, mesh_of
 from wrinkle_cad.cad.kernel.shape_index import ShapeIndex
-from wrinkle_cad.cad.kernel.topology import faces_of, kernel_step
+from wrinkle_cad.cad.kernel.steps import kernel_step
+from wrinkle_cad.cad.kernel.topology import faces_of
+from wrinkle_cad.cad.kernel.versions import ShapeMap
 from wrinkle_cad.errors import CadError, ExportError
 from wrinkle_cad.files.atomic import write_atomically
 
 from .face_styles import carried_over, styles_in
 from .shapes import Part
 from .xde import kernel_parameters, new_document, printable, set_name, silence_kernel
-
-try:  # OCP 7.9
-    from OCP.TopTools import TopTools_IndexedMapOfShape
-except ImportError:  # OCP 8.0 keeps every collection in one module
-    from OCP.collections import (
-        IndexedMap_TopoDS_Shape_TopTools_ShapeMapHasher as TopTools_IndexedMapOfShape,
-    )
 
 _SCHEMAS: Final = {"AP214": "AP214IS", "AP242": "AP242DIS"}
 _PARAMETERS: Final[dict[str, str | int]] = {
@@ -166,10 +161,10 @@ def _apart(shapes: Sequence[TopoDS_Shape]) -> list[TopoDS_Shape]:
     The kernel writes a shape that is part of another one as nothing at all, and one that carries a
     placement as an assembly.
     """
-    seen = TopTools_IndexedMapOfShape()
+    seen = ShapeMap()
     own: list[TopoDS_Shape] = []
     for shape in shapes:
-        pieces = TopTools_IndexedMapOfShape()
+        pieces = ShapeMap()
         TopExp.MapShapes_s(shape, pieces)
         is_shared = seen.Extent() > 0 and any(
             seen.Contains(pieces.FindKey(i)) for i in range(1, pieces.Extent() + 1)

@@ -35,13 +35,9 @@ from OCP.XCAFDoc import (
 )
 
 from wrinkle_cad.cad.kernel.topology import as_face, faces_of
+from wrinkle_cad.cad.kernel.versions import LabelList
 
 from .shapes import FaceStyle, has_role
-
-try:  # OCP 7.9
-    from OCP.TDF import TDF_LabelSequence
-except ImportError:  # OCP 8.0 keeps every collection in one module
-    from OCP.collections import Sequence_TDF_Label as TDF_LabelSequence
 
 Color = tuple[float, float, float]
 
@@ -126,7 +122,7 @@ def set_name(label: TDF_Label, name: str) -> None:
 def leaves_of(document: TDocStd_Document) -> list[Leaf]:
     """Returns every leaf of a document, in the file's order."""
     tool = XCAFDoc_DocumentTool.ShapeTool_s(document.Main())
-    roots = TDF_LabelSequence()
+    roots = LabelList()
     tool.GetFreeShapes(roots)
     labels = [roots.Value(i) for i in range(1, roots.Length() + 1)]
     uses = Counter(_references(labels))
@@ -182,7 +178,7 @@ def _product(label: TDF_Label) -> TDF_Label:
 def _components(product: TDF_Label) -> list[TDF_Label]:
     if not XCAFDoc_ShapeTool.IsAssembly_s(product):
         return []
-    found = TDF_LabelSequence()
+    found = LabelList()
     XCAFDoc_ShapeTool.GetComponents_s(product, found, False)
     return [found.Value(i) for i in range(1, found.Length() + 1)]
 
@@ -260,7 +256,7 @@ def _product_color(product: TDF_Label) -> Color | None:
 
 def _pieces(product: TDF_Label) -> Iterator[tuple[TDF_Label, TopoDS_Shape]]:
     """Yields the pieces of a product that have names or colors."""
-    found = TDF_LabelSequence()
+    found = LabelList()
     XCAFDoc_ShapeTool.GetSubShapes_s(product, found)
     for i in range(1, found.Length() + 1):
         label = found.Value(i)

@@ -18,7 +18,8 @@ from OCP.BRep import BRep_Builder
 from OCP.TopoDS import TopoDS_Shape, TopoDS_Shell
 
 from wrinkle_cad import settings
-from wrinkle_cad.cad.kernel.topology import check_valid, kernel_step
+from wrinkle_cad.cad.kernel.measures import check_valid
+from wrinkle_cad.cad.kernel.steps import kernel_step
 from wrinkle_cad.cad.rail.directrix import Directrix
 from wrinkle_cad.errors import CadError, InputError
 from wrinkle_cad.strip.curve.sampling import Samples

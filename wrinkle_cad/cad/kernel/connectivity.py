@@ -7,14 +7,13 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 from OCP.BRep import BRep_Builder, BRep_Tool
-from OCP.BRepAdaptor import BRepAdaptor_Curve
-from OCP.TopAbs import TopAbs_REVERSED
 from OCP.TopoDS import TopoDS_Edge, TopoDS_Face, TopoDS_Shape, TopoDS_Shell
 
 from wrinkle_cad.strip.portable import norm
 
-from . import topology as kernel
+from .curves import edge_ends
 from .shape_index import ShapeIndex
+from .topology import as_edge, edges_of, make_compound
 
 Floats = NDArray[np.float64]
 
@@ -31,7 +30,7 @@ def connected_groups(faces: Sequence[TopoDS_Face]) -> list[list[int]]:
 
     seen, first = ShapeIndex(), list[int]()
     for i, face in enumerate(faces):
-        for edge in kernel.edges_of(face):
+        for edge in edges_of(face):
             if BRep_Tool.Degenerated_s(edge):
                 continue
             at = seen.add(edge)
@@ -55,7 +54,7 @@ def joined_faces(faces: Sequence[TopoDS_Face]) -> TopoDS_Shape:
         for i in group:
             builder.Add(shell, faces[i])
         shells.append(shell)
-    return shells[0] if len(shells) == 1 else kernel.make_compound(shells)
+    return shells[0] if len(shells) == 1 else make_compound(shells)
 
 
 def border_chain(
@@ -73,28 +72,8 @@ def border_chain(
         gaps = [(norm(ends[k] - here), i, k) for i, (_, ends) in enumerate(left) for k in (0, 1)]
         _, i, k = min(gaps)
         edge, ends = left.pop(i)
-        chain.append(edge if k == 0 else kernel.as_edge(edge.Reversed()))
+        chain.append(edge if k == 0 else as_edge(edge.Reversed()))
         here = ends[1 - k]
         if norm(here - end) < best:
             best, length = norm(here - end), len(chain)
     return tuple(chain[:length])
-
-
-def edge_ends(edge: TopoDS_Edge) -> tuple[Floats, Floats]:
-    """Returns (3,) mm each: where the curve of an edge starts and ends, along its orientation.
-
-    A vertex may stand off the curve by its tolerance, which in a joined upper is not small.
-    """
-    adaptor = BRepAdaptor_Curve(edge)
-    ends = [adaptor.Value(adaptor.FirstParameter()), adaptor.Value(adaptor.LastParameter())]
-    if edge.Orientation() == TopAbs_REVERSED:
-        ends.reverse()
-    start, end = (np.array([at.X(), at.Y(), at.Z()]) for at in ends)
-    return start, end
-
-
-def edge_middle(edge: TopoDS_Edge) -> Floats:
-    """Returns (3,) mm: the point in the middle of an edge's parameter."""
-    adaptor = BRepAdaptor_Curve(edge)
-    at = adaptor.Value(0.5 * (adaptor.FirstParameter() + adaptor.LastParameter()))
-    return np.array([at.X(), at.Y(), at.Z()])

@@ -16,7 +16,8 @@ from OCP.TopoDS import TopoDS_Shape
 
 from wrinkle_cad import settings
 
-from .topology import faces_of, kernel_step
+from .steps import kernel_step
+from .topology import faces_of
 
 _STL_HEADER: Final = b"wrinkle_cad, millimetres"
 _STL_TRIANGLE: Final = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("tag", "<u2")])

@@ -6,19 +6,14 @@ from collections.abc import Iterable
 
 from OCP.TopoDS import TopoDS_Shape
 
-try:  # OCP 7.9
-    from OCP.TopTools import TopTools_IndexedMapOfShape
-except ImportError:  # OCP 8.0 keeps every collection in one module
-    from OCP.collections import (
-        IndexedMap_TopoDS_Shape_TopTools_ShapeMapHasher as TopTools_IndexedMapOfShape,
-    )
+from .versions import ShapeMap
 
 
 class ShapeIndex:
     """Shapes numbered from 0; a shape and its reverse are the same."""
 
     def __init__(self, shapes: Iterable[TopoDS_Shape] = ()) -> None:
-        self._map = TopTools_IndexedMapOfShape()
+        self._map = ShapeMap()
         for shape in shapes:
             self.add(shape)
 

@@ -1,7 +1,6 @@
 """B-spline curves and surfaces of the kernel from arrays of numbers, and back.
 
-All of them are clamped and not periodic. The two OCP versions name their arrays differently; the
-names of 7.9 are used here.
+All of them are clamped and not periodic.
 """
 
 from __future__ import annotations
@@ -12,18 +11,15 @@ from OCP.Geom import Geom_BSplineCurve, Geom_BSplineSurface
 from OCP.Geom2d import Geom2d_BSplineCurve
 from OCP.gp import gp_Pnt, gp_Pnt2d
 
-from .topology import kernel_step
-
-try:  # OCP 7.9
-    from OCP.TColgp import TColgp_Array1OfPnt, TColgp_Array1OfPnt2d, TColgp_Array2OfPnt
-    from OCP.TColStd import TColStd_Array1OfInteger, TColStd_Array1OfReal, TColStd_Array2OfReal
-except ImportError:  # OCP 8.0 keeps every collection in one module
-    from OCP.collections import Array1_double as TColStd_Array1OfReal
-    from OCP.collections import Array1_gp_Pnt as TColgp_Array1OfPnt
-    from OCP.collections import Array1_gp_Pnt2d as TColgp_Array1OfPnt2d
-    from OCP.collections import Array1_int as TColStd_Array1OfInteger
-    from OCP.collections import Array2_double as TColStd_Array2OfReal
-    from OCP.collections import Array2_gp_Pnt as TColgp_Array2OfPnt
+from .steps import kernel_step
+from .versions import (
+    IntegerRow,
+    PlanePointRow,
+    PointGrid,
+    PointRow,
+    RealGrid,
+    RealRow,
+)
 
 Floats = NDArray[np.float64]
 
@@ -63,7 +59,7 @@ def make_curve_2d(
 ) -> Geom2d_BSplineCurve:
     """Returns a clamped B-spline curve in the parameters of a surface: poles (k, 2)."""
     places = np.asarray(poles, dtype=np.float64)
-    points = TColgp_Array1OfPnt2d(1, len(places))
+    points = PlanePointRow(1, len(places))
     for i, (u, v) in enumerate(places.tolist(), start=1):
         points.SetValue(i, gp_Pnt2d(u, v))
     values = _real_array(np.asarray(knots, dtype=np.float64))
@@ -99,7 +95,7 @@ def make_surface(
 ) -> Geom_BSplineSurface:
     """Returns a clamped B-spline surface: poles (k, l, 3) mm, weights (k, l), the rest (u, v)."""
     grid = np.asarray(poles, dtype=np.float64)
-    points = TColgp_Array2OfPnt(1, grid.shape[0], 1, grid.shape[1])
+    points = PointGrid(1, grid.shape[0], 1, grid.shape[1])
     for i, j in np.ndindex(grid.shape[0], grid.shape[1]):
         points.SetValue(i + 1, j + 1, gp_Pnt(*(float(value) for value in grid[i, j])))
     values = [_real_array(np.asarray(value, dtype=np.float64)) for value in knots]
@@ -108,28 +104,28 @@ def make_surface(
         if weights is None:
             return Geom_BSplineSurface(points, *values, *counts, *degrees, False, False)
         given = np.asarray(weights, dtype=np.float64)
-        shares = TColStd_Array2OfReal(1, grid.shape[0], 1, grid.shape[1])
+        shares = RealGrid(1, grid.shape[0], 1, grid.shape[1])
         for i, j in np.ndindex(grid.shape[0], grid.shape[1]):
             shares.SetValue(i + 1, j + 1, float(given[i, j]))
         return Geom_BSplineSurface(points, shares, *values, *counts, *degrees, False, False)
 
 
-def _point_array(points: Floats) -> TColgp_Array1OfPnt:
-    array = TColgp_Array1OfPnt(1, len(points))
+def _point_array(points: Floats) -> PointRow:
+    array = PointRow(1, len(points))
     for i, (x, y, z) in enumerate(points.tolist(), start=1):
         array.SetValue(i, gp_Pnt(x, y, z))
     return array
 
 
-def _real_array(values: Floats) -> TColStd_Array1OfReal:
-    array = TColStd_Array1OfReal(1, len(values))
+def _real_array(values: Floats) -> RealRow:
+    array = RealRow(1, len(values))
     for i, value in enumerate(values.tolist(), start=1):
         array.SetValue(i, value)
     return array
 
 
-def _integer_array(values: NDArray[np.int64]) -> TColStd_Array1OfInteger:
-    array = TColStd_Array1OfInteger(1, len(values))
+def _integer_array(values: NDArray[np.int64]) -> IntegerRow:
+    array = IntegerRow(1, len(values))
     for i, value in enumerate(values.tolist(), start=1):
         array.SetValue(i, value)
     return array

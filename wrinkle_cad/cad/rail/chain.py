@@ -18,9 +18,10 @@ from OCP.TopExp import TopExp_Explorer
 from OCP.TopoDS import TopoDS_Edge, TopoDS_Iterator, TopoDS_Shape, TopoDS_Wire
 
 from wrinkle_cad import settings
+from wrinkle_cad.cad.kernel.curves import edge_curve
 from wrinkle_cad.cad.kernel.evaluation import PoleCurve
 from wrinkle_cad.cad.kernel.splines import curve_arrays
-from wrinkle_cad.cad.kernel.topology import as_edge, as_wire, edge_curve, edges_of, kind_name
+from wrinkle_cad.cad.kernel.topology import as_edge, as_wire, edges_of, kind_name
 from wrinkle_cad.errors import InputError
 from wrinkle_cad.strip.portable import norm
 

@@ -21,7 +21,7 @@ from OCP.TopoDS import TopoDS_Shape
 from wrinkle_cad import settings
 from wrinkle_cad.cad.kernel.evaluation import PoleCurve
 from wrinkle_cad.cad.kernel.splines import make_curve
-from wrinkle_cad.cad.kernel.topology import kernel_step
+from wrinkle_cad.cad.kernel.steps import kernel_step
 from wrinkle_cad.errors import InputError
 from wrinkle_cad.strip.curve.polyline import polyline_length, segment_lengths
 from wrinkle_cad.strip.portable import dot

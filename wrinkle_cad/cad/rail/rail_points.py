@@ -8,7 +8,7 @@ from OCP.GCPnts import GCPnts_AbscissaPoint
 from OCP.GeomAdaptor import GeomAdaptor_Curve
 
 from wrinkle_cad import settings
-from wrinkle_cad.cad.kernel.topology import kernel_step
+from wrinkle_cad.cad.kernel.steps import kernel_step
 from wrinkle_cad.errors import InputError
 
 from .directrix import Directrix

@@ -18,7 +18,7 @@ from OCP.TopoDS import TopoDS_Edge, TopoDS_Shell
 
 from wrinkle_cad import settings
 from wrinkle_cad.cad.faces.shell import build_shell
-from wrinkle_cad.cad.kernel.connectivity import edge_ends
+from wrinkle_cad.cad.kernel.curves import edge_ends
 from wrinkle_cad.cad.rail.directrix import Directrix, make_directrix, sample_directrix
 from wrinkle_cad.errors import InputError
 from wrinkle_cad.strip.curve.nearest import nearest_on_polyline

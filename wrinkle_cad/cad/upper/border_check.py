@@ -9,9 +9,10 @@ from OCP.BRepExtrema import BRepExtrema_DistShapeShape
 from OCP.TopoDS import TopoDS_Edge, TopoDS_Shape
 
 from wrinkle_cad import settings
-from wrinkle_cad.cad.kernel import topology as kernel
-from wrinkle_cad.cad.kernel.connectivity import edge_middle
+from wrinkle_cad.cad.kernel.curves import edge_middle
+from wrinkle_cad.cad.kernel.measures import length_of
 from wrinkle_cad.cad.kernel.shape_index import ShapeIndex
+from wrinkle_cad.cad.kernel.topology import free_edges, make_compound, make_vertex
 from wrinkle_cad.errors import CadError
 
 STEP = "compare the border with the upper's"
@@ -45,8 +46,8 @@ def compared_border(
     Raises:
         CadError: a free edge of the shell is none of the upper's, or some of these are missing.
     """
-    before, after = kernel.free_edges(upper), kernel.free_edges(shell)
-    lengths = [sum(kernel.length_of(edge) for edge in edges) for edges in (before, after)]
+    before, after = free_edges(upper), free_edges(shell)
+    lengths = [sum(length_of(edge) for edge in edges) for edges in (before, after)]
     strays = _strays(before, after, allowance)
     if strays:
         raise CadError(
@@ -72,14 +73,14 @@ def _strays(
 ) -> list[float]:
     """Returns the lengths in mm of the free edges that do not lie on the upper's."""
     if not before:
-        return [kernel.length_of(edge) for edge in after]
-    held, strays = kernel.make_compound(before), []
+        return [length_of(edge) for edge in after]
+    held, strays = make_compound(before), []
     known = ShapeIndex(before)
     for edge in after:
         if known.find(edge) >= 0:
             continue
-        gap = BRepExtrema_DistShapeShape(kernel.make_vertex(edge_middle(edge)), held).Value()
-        length = kernel.length_of(edge)
+        gap = BRepExtrema_DistShapeShape(make_vertex(edge_middle(edge)), held).Value()
+        length = length_of(edge)
         if gap > settings.SEWING and length > allowance:
             strays.append(length)
     return strays

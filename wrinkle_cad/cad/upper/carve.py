@@ -10,15 +10,11 @@ from OCP.BRepExtrema import BRepExtrema_DistShapeShape
 from OCP.TopoDS import TopoDS_Edge, TopoDS_Face, TopoDS_Shape
 
 from wrinkle_cad import settings
-from wrinkle_cad.cad.kernel import topology as kernel
-from wrinkle_cad.cad.kernel.connectivity import (
-    border_chain,
-    connected_groups,
-    edge_middle,
-    joined_faces,
-)
-from wrinkle_cad.cad.kernel.face_areas import face_areas
+from wrinkle_cad.cad.kernel.connectivity import border_chain, connected_groups, joined_faces
+from wrinkle_cad.cad.kernel.curves import edge_middle
+from wrinkle_cad.cad.kernel.measures import face_areas, length_of
 from wrinkle_cad.cad.kernel.shape_index import ShapeIndex
+from wrinkle_cad.cad.kernel.topology import faces_of, free_edges, make_compound, make_vertex, unwrap
 from wrinkle_cad.cad.rail.directrix import Directrix, make_directrix, orient_alike
 from wrinkle_cad.errors import CadError, InputError
 
@@ -69,7 +65,7 @@ def carve(
     _check_numbers(margin, fade, limit, join)
     first, second, _ = orient_alike(make_directrix(p, name="P"), make_directrix(q, name="Q"))
     request = CarveRequest(first, second, margin, fade, limit, join, allow_split)
-    return carve_shape(kernel.unwrap(upper), request, source=upper)
+    return carve_shape(unwrap(upper), request, source=upper)
 
 
 def carve_shape(shape: TopoDS_Shape, request: CarveRequest, *, source: object = None) -> Opening:
@@ -120,7 +116,7 @@ def carve_shape(shape: TopoDS_Shape, request: CarveRequest, *, source: object = 
 
 def _joined_upper(shape: TopoDS_Shape, join: float) -> tuple[TopoDS_Shape, list[int]]:
     """Returns the upper with its faces joined, and for each the index of the one given."""
-    faces = kernel.faces_of(shape)
+    faces = faces_of(shape)
     if join > 0.0 and len(connected_groups(faces)) > 1:
         return joined(faces, join)
     return shape, list(range(len(faces)))
@@ -167,16 +163,15 @@ def _check_near(rail: Rail, name: str, limit: float) -> None:
 
 
 def _ends_on_border(shape: TopoDS_Shape, rails: tuple[Rail, Rail]) -> tuple[bool, bool]:
-    border = kernel.free_edges(shape)
+    border = free_edges(shape)
     if not border:
         return False, False
-    held = kernel.make_compound(border)
+    held = make_compound(border)
     reach = [settings.BORDER_REACH_PER_LENGTH * rail.length for rail in rails]
 
     def reaches(at: int) -> bool:
         gaps = [
-            BRepExtrema_DistShapeShape(kernel.make_vertex(rail.points[at]), held).Value()
-            for rail in rails
+            BRepExtrema_DistShapeShape(make_vertex(rail.points[at]), held).Value() for rail in rails
         ]
         return all(gap <= limit for gap, limit in zip(gaps, reach, strict=True))
 
@@ -219,9 +214,9 @@ def _checked_areas(faces: Sequence[TopoDS_Face], split: Split) -> tuple[float, f
     bound = settings.AREA_BALANCE / 4.0
     whole = kept = cut = 0.0
     for face, group, inside in zip(faces, split.pieces, split.is_inside, strict=True):
-        (before,) = face_areas([face], bound)
+        (before,) = face_areas([face], relative_error=bound)
         is_whole = len(group) == 1 and group[0].IsPartner(face)
-        after = [before] if is_whole else face_areas(group, bound)
+        after = [before] if is_whole else face_areas(group, relative_error=bound)
         whole += before
         kept += sum(area for area, is_in in zip(after, inside, strict=True) if not is_in)
         cut += sum(area for area, is_in in zip(after, inside, strict=True) if is_in)
@@ -248,11 +243,7 @@ def _chains(
         for i, side in enumerate(sides)
     }
     cut_edges = ShapeIndex(cut.edge for cut in split.cuts)
-    border = [
-        edge
-        for edge in kernel.free_edges(kernel.make_compound(removed))
-        if cut_edges.find(edge) < 0
-    ]
+    border = [edge for edge in free_edges(make_compound(removed)) if cut_edges.find(edge) < 0]
     corners = np.array([[rail.points[at] for rail in rails] for at in (0, -1)])
     middles = corners.mean(axis=1)
     for at, name in enumerate(ENDS):
@@ -264,7 +255,7 @@ def _chains(
             ]
             named[name] = border_chain(near, corners[at, 0], corners[at, 1])
     kept = ShapeIndex(edge for at in (0, 1) if on_border[at] for edge in named[ENDS[at]])
-    lost = sum(kernel.length_of(edge) for edge in border if kept.find(edge) < 0)
+    lost = sum(length_of(edge) for edge in border if kept.find(edge) < 0)
     return [named.get(name, ()) for name in ("p", "q", *ENDS)], lost
 
 

@@ -17,9 +17,9 @@ from OCP.gp import gp_Pnt
 from OCP.TopoDS import TopoDS_Edge, TopoDS_Face
 
 from wrinkle_cad import settings
-from wrinkle_cad.cad.kernel import topology as kernel
-from wrinkle_cad.cad.kernel.connectivity import edge_ends
+from wrinkle_cad.cad.kernel.curves import edge_curve, edge_ends
 from wrinkle_cad.cad.kernel.splines import curve_arrays, make_surface
+from wrinkle_cad.cad.kernel.steps import kernel_step
 from wrinkle_cad.strip.curve.polyline import segment_gaps
 from wrinkle_cad.strip.portable import norm
 
@@ -46,7 +46,7 @@ def end_fan(
         run.append(_straight(corners[1], bridge[1]))
     if not run or _height(run, bridge) <= settings.SLIVER:
         return ()
-    return tuple(_cone(kernel.edge_curve(edge), apex) for edge in run)
+    return tuple(_cone(edge_curve(edge), apex) for edge in run)
 
 
 def _straight(start: Floats, end: Floats) -> TopoDS_Edge:
@@ -58,7 +58,7 @@ def _height(run: Sequence[TopoDS_Edge], bridge: Floats) -> float:
     """Returns mm: how far the run of edges stands off the straight bridge."""
     worst = 0.0
     for edge in run:
-        poles = curve_arrays(kernel.edge_curve(edge))[0]
+        poles = curve_arrays(edge_curve(edge))[0]
         points = np.vstack((poles, *(end[None] for end in edge_ends(edge))))
         worst = max(worst, float(segment_gaps(points, *bridge).max()))
     return worst
@@ -69,5 +69,5 @@ def _cone(curve: Geom_BSplineCurve, apex: Floats) -> TopoDS_Face:
     grid = np.stack((poles, np.broadcast_to(apex, poles.shape)), axis=1)
     both = None if weights is None else np.stack((weights, weights), axis=1)
     surface = make_surface(grid, (knots, (0.0, 1.0)), (counts, (2, 2)), (curve.Degree(), 1), both)
-    with kernel.kernel_step("close an end of the opening"):
+    with kernel_step("close an end of the opening"):
         return BRepBuilderAPI_MakeFace(surface, settings.CONFUSION).Face()

@@ -22,7 +22,7 @@ from OCP.TopAbs import TopAbs_OUT, TopAbs_REVERSED
 from OCP.TopoDS import TopoDS_Face, TopoDS_Shape
 
 from wrinkle_cad import settings
-from wrinkle_cad.cad.kernel import topology as kernel
+from wrinkle_cad.cad.kernel.topology import faces_of, kind_name, make_vertex
 from wrinkle_cad.errors import InputError
 from wrinkle_cad.strip.portable import norm
 
@@ -47,10 +47,10 @@ class UpperFaces:
     """The faces of an upper, ready to be asked for nearest points."""
 
     def __init__(self, upper: TopoDS_Shape) -> None:
-        self.faces = kernel.faces_of(upper)
+        self.faces = faces_of(upper)
         if not self.faces:
             raise InputError(
-                f"upper - found a {kernel.kind_name(upper)} without faces - a face, a shell or"
+                f"upper - found a {kind_name(upper)} without faces - a face, a shell or"
                 " a compound of faces is needed - choose another shape as the upper"
             )
         self._shape = upper
@@ -100,7 +100,7 @@ class UpperFaces:
 
     def _border_foot(self, point: Floats) -> tuple[int, Floats]:
         """Returns the face and (2,) surface parameters of the nearest border point."""
-        nearest = BRepExtrema_DistShapeShape(kernel.make_vertex(point), self._shape)
+        nearest = BRepExtrema_DistShapeShape(make_vertex(point), self._shape)
         on = nearest.PointOnShape2(1)
         at = np.array([on.X(), on.Y(), on.Z()])
         gaps = []

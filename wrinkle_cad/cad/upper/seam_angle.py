@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 from OCP.TopoDS import TopoDS_Edge, TopoDS_Face
 
-from wrinkle_cad.cad.kernel import topology as kernel
+from wrinkle_cad.cad.kernel.measures import length_of
 from wrinkle_cad.cad.kernel.shape_index import ShapeIndex
 from wrinkle_cad.strip.portable import dot, norm
 
@@ -52,7 +52,7 @@ def seam_angles(faces: Sequence[TopoDS_Face], parts: Sequence[str]) -> tuple[Sea
             first, second = normals
             turn = math.atan2(norm(np.cross(first, second)), float(dot(first, second)))
             seam = " | ".join(sorted(parts[i] for i, _ in owners))
-            found.setdefault(seam, []).append((kernel.length_of(owners[0][1]), turn))
+            found.setdefault(seam, []).append((length_of(owners[0][1]), turn))
     return tuple(_summed(seam, found[seam]) for seam in sorted(found))
 
 

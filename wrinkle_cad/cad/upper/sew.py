@@ -13,8 +13,9 @@ from OCP.TopAbs import TopAbs_REVERSED
 from OCP.TopoDS import TopoDS_Face, TopoDS_Shape, TopoDS_Shell
 
 from wrinkle_cad.cad.faces.face_borders import sub_curve
-from wrinkle_cad.cad.kernel import topology as kernel
 from wrinkle_cad.cad.kernel.shape_index import ShapeIndex
+from wrinkle_cad.cad.kernel.steps import kernel_step
+from wrinkle_cad.cad.kernel.topology import as_shell, edges_of, faces_of, shells_of
 from wrinkle_cad.errors import CadError
 
 from .split import oriented_edges
@@ -41,14 +42,14 @@ def joined(faces: Sequence[TopoDS_Face], tolerance: float) -> tuple[TopoDS_Shape
     Raises:
         CadError: a face went missing.
     """
-    with kernel.kernel_step("join the faces of the upper"):
+    with kernel_step("join the faces of the upper"):
         sewing = BRepBuilderAPI_Sewing(tolerance)
         for face in faces:
             sewing.Add(face)
         sewing.Perform()
         sewn = sewing.SewedShape()
-    places = ShapeIndex(kernel.faces_of(sewn))
-    origin = [-1] * len(kernel.faces_of(sewn))
+    places = ShapeIndex(faces_of(sewn))
+    origin = [-1] * len(faces_of(sewn))
     for i, face in enumerate(faces):
         at = places.find(sewing.Modified(face) if sewing.IsModified(face) else face)
         if at >= 0:
@@ -68,15 +69,15 @@ def sew(faces: Sequence[TopoDS_Face], tolerance: float) -> Sewn:
     Raises:
         CadError: the result is not one shell, or a face went missing, or an edge has more than two.
     """
-    with kernel.kernel_step(STEP):
+    with kernel_step(STEP):
         sewing = BRepBuilderAPI_Sewing(tolerance)
         sewing.SetNonManifoldMode(False)
         for face in faces:
             sewing.Add(face)
         sewing.Perform()
         sewn = sewing.SewedShape()
-    shells = kernel.shells_of(sewn) if not sewn.IsNull() else []
-    found = len(kernel.faces_of(shells[0])) if shells else 0
+    shells = shells_of(sewn) if not sewn.IsNull() else []
+    found = len(faces_of(shells[0])) if shells else 0
     lost = sewing.NbDeletedFaces() + sewing.NbMultipleEdges()
     if len(shells) != 1 or found != len(faces) or lost:
         raise CadError(
@@ -86,14 +87,14 @@ def sew(faces: Sequence[TopoDS_Face], tolerance: float) -> Sewn:
             f" than two faces - 1 shell of {len(faces)} faces is needed - change the margin or move"
             " the rails a little",
         )
-    shell = kernel.as_shell(shells[0])
-    held = ShapeIndex(kernel.faces_of(shell))
+    shell = as_shell(shells[0])
+    held = ShapeIndex(faces_of(shell))
     places = [held.find(sewing.Modified(face)) for face in faces]
     if min(places) < 0 or len(set(places)) < len(faces):
         raise CadError(STEP, "two faces became one - each must stay itself - widen the margin")
-    if kernel.faces_of(shell)[places[0]].Orientation() != faces[0].Orientation():
-        shell = kernel.as_shell(shell.Reversed())
-    kept = kernel.faces_of(shell)
+    if faces_of(shell)[places[0]].Orientation() != faces[0].Orientation():
+        shell = as_shell(shell.Reversed())
+    kept = faces_of(shell)
     _check_oriented(shell)
     _trim_curves(shell, faces)
     return Sewn(shell, tuple(kept[place] for place in places))
@@ -105,7 +106,7 @@ def _trim_curves(shell: TopoDS_Shell, given: Sequence[TopoDS_Face]) -> None:
     Sewing cuts an edge into many on one and the same curve, and a STEP file holds it for each.
     """
     old = ShapeIndex(edge for face in given for edge in oriented_edges(face))
-    for edge in kernel.edges_of(shell):
+    for edge in edges_of(shell):
         if old.find(edge) >= 0 or BRep_Tool.Degenerated_s(edge):
             continue
         ends = BRepAdaptor_Curve(edge)
@@ -124,7 +125,7 @@ def _trim_curves(shell: TopoDS_Shell, given: Sequence[TopoDS_Face]) -> None:
 def _check_oriented(shell: TopoDS_Shell) -> None:
     """Checks that two faces that share an edge run along it in opposite directions."""
     index, forward, reverse = ShapeIndex(), list[int](), list[int]()
-    for face in kernel.faces_of(shell):
+    for face in faces_of(shell):
         for edge in oriented_edges(face):
             at = index.add(edge)
             if at == len(forward):

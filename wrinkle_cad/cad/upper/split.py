@@ -24,9 +24,11 @@ from OCP.TopExp import TopExp_Explorer
 from OCP.TopoDS import TopoDS_Edge, TopoDS_Face, TopoDS_Shape
 
 from wrinkle_cad import settings
-from wrinkle_cad.cad.kernel import topology as kernel
 from wrinkle_cad.cad.kernel.shape_index import ShapeIndex
 from wrinkle_cad.cad.kernel.splines import make_surface
+from wrinkle_cad.cad.kernel.steps import kernel_step
+from wrinkle_cad.cad.kernel.topology import as_edge, as_face
+from wrinkle_cad.cad.kernel.versions import ShapeList
 from wrinkle_cad.errors import CadError
 from wrinkle_cad.strip.curve.cubic import cubic_through
 from wrinkle_cad.strip.curve.nearest import nearest_on_polyline
@@ -35,11 +37,6 @@ from wrinkle_cad.strip.portable import dot, norm
 
 from .drawn_edges import drawn_edges
 from .outline import Side, unit
-
-try:  # OCP 7.9
-    from OCP.TopTools import TopTools_ListOfShape
-except ImportError:  # OCP 8.0 keeps every collection in one module
-    from OCP.collections import List_TopoDS_Shape as TopTools_ListOfShape
 
 Floats = NDArray[np.float64]
 
@@ -90,7 +87,7 @@ def split_faces(
     Raises:
         CadError: the kernel cannot split, or a piece lies on both sides of the outline.
     """
-    with kernel.kernel_step(STEP):
+    with kernel_step(STEP):
         drawn = _drawn(faces, sides, overrun)
         tools = drawn or [
             _ribbon(side, height, over) for side, over in zip(sides, overrun, strict=True)
@@ -121,8 +118,8 @@ def _drawn(
     return drawn_edges(faces[int(owners[0])], sides)
 
 
-def _listed(shapes: Sequence[TopoDS_Shape]) -> TopTools_ListOfShape:
-    listed = TopTools_ListOfShape()
+def _listed(shapes: Sequence[TopoDS_Shape]) -> ShapeList:
+    listed = ShapeList()
     for shape in shapes:
         listed.Append(shape)
     return listed
@@ -131,9 +128,7 @@ def _listed(shapes: Sequence[TopoDS_Shape]) -> TopTools_ListOfShape:
 def _pieces_of(splitter: BRepAlgoAPI_Splitter, face: TopoDS_Face) -> tuple[TopoDS_Face, ...]:
     if splitter.IsDeleted(face):
         return ()
-    pieces = tuple(
-        kernel.as_face(piece.Oriented(face.Orientation())) for piece in splitter.Modified(face)
-    )
+    pieces = tuple(as_face(piece.Oriented(face.Orientation())) for piece in splitter.Modified(face))
     return pieces or (face,)
 
 
@@ -223,7 +218,7 @@ def oriented_edges(face: TopoDS_Face) -> list[TopoDS_Edge]:
     """Returns the edges of a face as its wires run, a seam twice, degenerated ones left out."""
     found, edges = [], TopExp_Explorer(face, TopAbs_EDGE)
     while edges.More():
-        edge = kernel.as_edge(edges.Current())
+        edge = as_edge(edges.Current())
         if not BRep_Tool.Degenerated_s(edge):
             found.append(edge)
         edges.Next()
@@ -243,7 +238,7 @@ def _cut_edge(
     side, at = sides[i], places[i][1]
     j = min(int(at), len(side.points) - 2)
     along = float(dot(tangent, side.points[j + 1] - side.points[j])) > 0.0
-    forward = edge if along else kernel.as_edge(edge.Reversed())
+    forward = edge if along else as_edge(edge.Reversed())
     return CutEdge(forward, i, at), float(dot(material, side.inward[round(at)]))
 
 

@@ -12,9 +12,9 @@ from numpy.typing import NDArray
 from OCP.TopoDS import TopoDS_Edge, TopoDS_Face, TopoDS_Shape, TopoDS_Shell
 
 from wrinkle_cad import settings
-from wrinkle_cad.cad.kernel import topology as kernel
-from wrinkle_cad.cad.kernel.connectivity import edge_ends
-from wrinkle_cad.cad.kernel.face_areas import face_areas
+from wrinkle_cad.cad.kernel.curves import edge_ends
+from wrinkle_cad.cad.kernel.measures import check_valid, face_areas, tolerance_of
+from wrinkle_cad.cad.kernel.topology import faces_of
 from wrinkle_cad.cad.rail.directrix import Directrix
 from wrinkle_cad.errors import CadError, InputError
 from wrinkle_cad.strip.portable import norm
@@ -131,13 +131,11 @@ def _all_faces(
     openings: Sequence[Opening], strips: Sequence[StripLike], tolerance: float
 ) -> tuple[list[TopoDS_Face], list[str], list[Band]]:
     """Returns the faces to be sewn, what part each is of, and the bands."""
-    faces = kernel.faces_of(openings[-1].body_shape)
+    faces = faces_of(openings[-1].body_shape)
     parts, bands = [BODY] * len(faces), list[Band]()
     for opening, strip in zip(openings, strips, strict=True):
         name = strip.name
-        pieces: list[tuple[str, Sequence[TopoDS_Face]]] = [
-            (name, kernel.faces_of(strip.topods_shell()))
-        ]
+        pieces: list[tuple[str, Sequence[TopoDS_Face]]] = [(name, faces_of(strip.topods_shell()))]
         ends = []
         for i, (edges, profile, samples) in enumerate(
             (
@@ -150,7 +148,7 @@ def _all_faces(
             if band is not None:
                 part = f"{name} band {band.name}"
                 bands.append(replace(band, name=part))
-                pieces.append((part, kernel.faces_of(band.shell)))
+                pieces.append((part, faces_of(band.shell)))
         for at, edges in ((0, opening.start_edges), (1, opening.end_edges)):
             bridge = np.array([strip.p_samples.points[-at], strip.q_samples.points[-at]])
             corners = np.array([ends[0][at], ends[1][at]])
@@ -191,7 +189,7 @@ def _stitched(
         sum(opening.lost_border for opening in chained),
         sum(_gaps_bridged(opening) for opening in chained),
     )
-    kernel.check_valid(sewn.shell, STEP)
+    check_valid(sewn.shell, STEP)
     report = StitchReport(
         face_count=len(sewn.faces),
         free_edges_before=border.before,
@@ -201,7 +199,7 @@ def _stitched(
         max_edge_tolerance_mm=_checked_tolerance(sewn.shell, upper),
         area_balance_mm2=sum(opening.area_balance for opening in chained),
         area_mm2=chained[-1].areas[1]
-        + sum(face_areas(sewn.faces[parts.count(BODY) :], settings.AREA_BALANCE)),
+        + sum(face_areas(sewn.faces[parts.count(BODY) :], relative_error=settings.AREA_BALANCE)),
         is_valid=True,
         seams=seam_angles(sewn.faces, parts),
         bands=tuple(bands),
@@ -221,7 +219,7 @@ def _gaps_bridged(opening: Opening) -> float:
 
 
 def _checked_tolerance(shell: TopoDS_Shell, upper: TopoDS_Shape) -> float:
-    found, own = kernel.tolerance_of(shell), kernel.tolerance_of(upper)
+    found, own = tolerance_of(shell), tolerance_of(upper)
     limit = max(settings.EDGE_TOLERANCE_LIMIT, own)
     if found > limit:
         raise CadError(

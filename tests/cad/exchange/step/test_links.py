@@ -7,8 +7,8 @@ from pathlib import Path
 
 import pytest
 
+from tests.cad.exchange.test_write import parts_of_every_kind
 from tests.cad.makers import curves_text
-from tests.cad.test_write import parts_of_every_kind
 from wrinkle_cad.cad.exchange.read import read_cad
 from wrinkle_cad.cad.exchange.step.bytes import Header
 from wrinkle_cad.cad.exchange.step.links import link_fault

@@ -1,0 +1,32 @@
+"""Steps of the CAD kernel: what it throws becomes one of this package's errors."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+
+from OCP import Geom, Standard, StdFail, TopoDS, gp
+
+from wrinkle_cad.errors import CadError
+
+# The bindings register each class on its own: they share no base but Exception.
+KERNEL_ERRORS: tuple[type[Exception], ...] = (
+    *(
+        kind
+        for module in (Standard, StdFail, TopoDS, Geom, gp)
+        for kind in vars(module).values()
+        if isinstance(kind, type) and issubclass(kind, Exception)
+    ),
+    RuntimeError,
+)
+
+
+@contextmanager
+def kernel_step(step: str) -> Iterator[None]:
+    """Turns what the kernel throws inside the block into a ``CadError`` that names the step."""
+    try:
+        yield
+    except KERNEL_ERRORS as error:
+        message = " ".join(str(error).split()) or type(error).__name__
+        found = f"the CAD kernel failed ({message}). Check the input shape."
+        raise CadError(step, found) from error
