@@ -11,6 +11,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from wrinkle_cad.strip.portable import dot
+
 Floats = NDArray[np.float64]
 
 
@@ -27,7 +29,8 @@ def row_lengths(vectors: ArrayLike) -> Floats:
         >>> row_lengths([[3.0, 4.0, 0.0], [0.0, 0.0, 2.0]]).tolist()
         [5.0, 2.0]
     """
-    return np.sqrt(_row_products(*(np.asarray(vectors, dtype=np.float64),) * 2))
+    rows = np.asarray(vectors, dtype=np.float64)
+    return np.sqrt(dot(rows, rows))
 
 
 def segment_lengths(points: ArrayLike) -> Floats:
@@ -115,14 +118,6 @@ def segment_gaps(points: ArrayLike, starts: ArrayLike, ends: ArrayLike) -> Float
     start = np.asarray(starts, dtype=np.float64)
     chord = np.asarray(ends, dtype=np.float64) - start
     offset = np.asarray(points, dtype=np.float64) - start
-    square = _row_products(chord, chord)
-    along = _row_products(offset, chord) / np.where(square > 0.0, square, 1.0)
+    square = dot(chord, chord)
+    along = dot(offset, chord) / np.where(square > 0.0, square, 1.0)
     return row_lengths(offset - np.clip(along, 0.0, 1.0)[..., None] * chord)
-
-
-def _row_products(first: Floats, second: Floats) -> Floats:
-    """(...) float64: scalar products of (..., d) vectors, summed in the order of coordinates."""
-    total: Floats = first[..., 0] * second[..., 0]
-    for axis in range(1, first.shape[-1]):
-        total = total + first[..., axis] * second[..., axis]
-    return total
