@@ -17,6 +17,7 @@ LAYER = {
     "errors": 0,
     "settings": 0,
     "files": 1,
+    "options": 1,
     "strip": 2,
     "pattern": 3,
     "cad": 4,

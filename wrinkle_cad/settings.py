@@ -6,7 +6,7 @@ Lengths are in mm and angles in radians unless a name ends in another unit.
 
 from __future__ import annotations
 
-from typing import Final
+from typing import Final, Literal, get_args
 
 VERSION: Final = "0.1.0"
 
@@ -78,18 +78,26 @@ UNROLLING_ACCURACY: Final = 1e-11
 TURNED_BACK_PER_TOLERANCE: Final = 1e-3
 """A curve segment turns back, seen from its apex, if it sweeps this share of the tolerance back."""
 
-FLAT_LINE_PER_TOLERANCE: Final = 0.2
-"""The flat rails follow their curves to this share of the chord tolerance.
+Criterion = Literal["invalid", "bending", "area", "length"]
+"""What a search can minimise."""
+Search = Literal["global", "local"]
+"""The exact optimum, or one step ahead at a time."""
+Energy = Literal["hinge", "paper"]
+"""How bending is measured."""
+Surface = Literal["cones", "facets"]
+"""Faces of a strip: their banks are the exact curves, or planar triangles."""
+StepSchema = Literal["AP214", "AP242"]
+Unit = Literal["mm", "cm", "m", "inch", "ft"]
+"""Units of length that a file may have."""
+WaveSide = Literal["out", "in", "both"]
+"""The side of an upper on which waves stand."""
 
-Chords are shorter than their curve in proportion to it, and seams are to agree to 1e-4.
-"""
-
-CRITERIA: Final = ("invalid", "bending")
+CRITERIA: Final[tuple[Criterion, ...]] = ("invalid", "bending")
 """GODT+GMBT: as many locally convex bridges as possible, then least bending."""
 
 SEARCH: Final = "global"
 ENERGY: Final = "hinge"
-SURFACES: Final = ("cones", "facets")
+SURFACES: Final = get_args(Surface)
 SURFACE: Final = "cones"
 STRIP_COLOR: Final = (0.80, 0.52, 0.25)
 """Leather: red, green, blue from 0 to 1."""
@@ -97,10 +105,6 @@ BAND_COLOR: Final = (0.88, 0.68, 0.45)
 """Of what joins the wrinkle to the upper: lighter leather."""
 UPPER_COLOR: Final = (0.72, 0.72, 0.70)
 """Light grey, so that the wrinkle stands out."""
-VIEW_SAG: Final = 0.1
-"""mm; how far the triangles of the page's body may lie from its faces."""
-VIEW_ANGLE: Final = 0.35
-"""rad; how far the normals of its neighbouring triangles may differ."""
 STEP_SCHEMA: Final = "AP214"
 
 CONFUSION: Final = 1e-7
@@ -124,20 +128,8 @@ AREA_FIRST_ORDER_PER_ERROR: Final = 500.0
 PATTERN_CORNER: Final = 0.5
 """rad; the outline of a pattern turns sharper than this at a corner, else it is a curve."""
 
-MITRE_LIMIT: Final = 2.0
-"""A mitred corner of the seam allowance reaches at most this many widths from the sew line."""
-
-SEAM_ALLOWANCE: Final = (0.0, 0.0, 0.0, 0.0)
-"""mm; on P, Q, the start and the end."""
-
-NOTCH_DEPTH: Final = 3.0
-"""mm; how far a notch is cut in when the allowance is wide enough for it."""
-
 NOTCH_DEPTH_PER_ALLOWANCE: Final = 0.6
 """A notch never eats more than this share of the seam allowance."""
-
-NOTCH_WIDTH: Final = 2.0
-"""mm; opening of a V, U, T or castle notch at the cut line."""
 
 NOTCH_CLEARANCE: Final = 3.0
 """mm of seam between a notch and the next corner, at least."""
@@ -160,8 +152,9 @@ PIECE_SIZE: Final = "M"
 STYLE_NAME: Final = "PATTERN"
 """What a file of pieces calls its style when nobody named it."""
 
-PATTERN_OVERLAP: Final = "split"
-"""A pattern that overlaps itself is cut at bridges into as few pieces as possible."""
+DxfVersion = Literal["R12", "R2000", "R2010"]
+Curves = Literal["lines", "arcs", "splines"]
+"""What curved cut lines are written as in a DXF file."""
 
 DXF_PROFILE: Final = "cutter"
 DXF_VERSION: Final = "R2000"
@@ -177,9 +170,6 @@ SPAN_SLACK: Final = 1e-9
 
 MATRIX_OVERVIEW: Final = 640
 """Pixels on the longer side of the page's overview of a validity matrix, at most."""
-
-MATRIX_BRIDGES: Final = 50_000_000
-"""The page shows no validity matrix of more possible bridges: they alone would take 50 MB."""
 
 MATRIX_TILE: Final = 500
 """Bridges on a side of one tile of a validity matrix in the page."""
@@ -315,8 +305,8 @@ RIBBON_PER_LENGTH: Final = 0.01
 AREA_BALANCE: Final = 1e-5
 """Relative; by how much the areas of body and removed part may differ from the upper's."""
 
-WAVE_PHASES: Final = (0.0, 0.0)
-"""rad; where the waves of P and Q start in their periods."""
+WAVE_PHASES_DEG: Final = (0.0, 0.0)
+"""deg; where the waves of P and Q start in their periods."""
 
 WAVE_SIDE: Final = "out"
 """Wrinkles stand on the outside of the upper."""

@@ -21,7 +21,10 @@ def view() -> StripView:
 
 def pieces_with(view: StripView, **settings: object) -> tuple[object, ...]:
     return make_pieces(
-        view.unrolling, view.triangulation, name="a", settings=PieceSettings(**settings)
+        view.unrolling,
+        view.triangulation,
+        name="a",
+        settings=PieceSettings(rulings=True, **settings),
     )
 
 
@@ -87,7 +90,7 @@ def test_a_strip_that_starts_in_a_point_has_its_bridges_there() -> None:
     s = np.linspace(-1.2, 1.2, 40)
     p = np.column_stack((40.0 * np.sin(s), 8.0 * (s**2 - 1.44), 40.0 * np.cos(s)))
     q = np.column_stack((40.0 * np.sin(s), 8.0 * (1.44 - s**2), 40.0 * np.cos(s)))
-    view = view_of((p, q), settings=PieceSettings(tolerance=1e-4))
+    view = view_of((p, q), settings=PieceSettings(tolerance=1e-4, rulings=True))
     (piece,) = view.pieces
     _, ends = bridge_ends(piece, view.triangulation, view.unrolling)
     assert np.allclose(ends[0, 0], ends[0, 1], atol=0.01)
@@ -96,7 +99,7 @@ def test_a_strip_that_starts_in_a_point_has_its_bridges_there() -> None:
 
 
 def test_the_cylinder_strip_also_fits() -> None:
-    view = view_of(cylinder_rails(), settings=PieceSettings(tolerance=1e-4))
+    view = view_of(cylinder_rails(), settings=PieceSettings(tolerance=1e-4, rulings=True))
     (piece,) = view.pieces
     _, ends = bridge_ends(piece, view.triangulation, view.unrolling)
     assert np.allclose(ends[1:-1], piece.rulings, atol=0.01)

@@ -6,11 +6,15 @@ from collections.abc import Mapping
 from dataclasses import asdict
 from datetime import datetime
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, cast
+from typing import TYPE_CHECKING
 
 from wrinkle_cad import settings
 from wrinkle_cad.cad.kernel.loading import kernel_importable
 from wrinkle_cad.errors import Finding
+from wrinkle_cad.options.option import values_of
+from wrinkle_cad.pattern.piece.options import PieceOptions, PieceSettings
+from wrinkle_cad.report.material import Limits, LimitSettings, read_material
+from wrinkle_cad.wrinkle.options import StripSettings
 
 from .job import Job
 from .outputs import check_outputs_are_ours
@@ -18,10 +22,6 @@ from .outputs import check_outputs_are_ours
 if TYPE_CHECKING:
     from wrinkle_cad.cad.exchange.choose import Chosen
     from wrinkle_cad.cad.exchange.shapes import CadFile
-    from wrinkle_cad.pattern.formats.contours import Curves
-    from wrinkle_cad.pattern.formats.dxf import DxfVersion
-    from wrinkle_cad.pattern.piece.options import PieceSettings
-    from wrinkle_cad.report.material import Limits
     from wrinkle_cad.wrinkle.cut_pattern import Pattern
     from wrinkle_cad.wrinkle.wrinkle_strip import WrinkleStrip
 
@@ -67,18 +67,8 @@ def strip_of(job: Job, p: object, q: object, name: str) -> WrinkleStrip:
     """
     from wrinkle_cad.wrinkle.wrinkle_strip import WrinkleStrip
 
-    return WrinkleStrip(
-        p,
-        q,
-        name=job.name if name == settings.STRIP_NAME else name,
-        tolerance=job.tolerance,
-        surface=job.surface,
-        criteria=job.criteria,
-        search=job.search,
-        energy=job.energy,
-        planarity=job.planarity,
-        max_chord=job.max_chord,
-    )
+    own_name = job.name if name == settings.STRIP_NAME else name
+    return WrinkleStrip(p, q, name=own_name, **values_of(job, StripSettings))
 
 
 def limits_of(job: Job) -> Limits:
@@ -87,13 +77,7 @@ def limits_of(job: Job) -> Limits:
     Raises:
         InputError: the material's file cannot be used.
     """
-    from wrinkle_cad.report.material import Limits, read_material
-
-    limits = Limits(
-        max_fold_deg=job.max_fold_deg,
-        max_twist_deg=job.max_twist_deg,
-        max_invalid_percent=job.max_invalid_percent,
-    )
+    limits = Limits(**values_of(job, LimitSettings))
     return limits if job.material is None else read_material(job.material, limits)
 
 
@@ -107,40 +91,10 @@ def piece_settings_of(job: Job, limits: Limits) -> PieceSettings:
     Raises:
         InputError: a setting does not fit a piece.
     """
-    from wrinkle_cad.pattern.piece.options import NotchRule, PieceSettings
-
-    def rule(at: tuple[float, ...]) -> NotchRule:
-        if at:
-            return NotchRule(at=at)
-        return NotchRule(count=job.notches, spacing=job.notch_spacing)
-
-    options: dict[str, Any] = {
-        name: getattr(job, name)
-        for name in (
-            "tolerance",
-            "seam_allowance",
-            "lasting_margin",
-            "notch_kind",
-            "drill_holes",
-            "mitre_limit",
-            "surface_side",
-            "hand",
-            "size",
-            "quantity",
-            "overlap",
-            "stretch",
-            "rulings",
-            "ruling_spacing",
-        )
-    }
-    return PieceSettings(
-        **options,
-        notches_p=rule(job.notch_at_p),
-        notches_q=rule(job.notch_at_q),
-        thickness=limits.thickness_mm if job.thickness is None else job.thickness,
-        material=limits.material,
-        grain="along" if job.grain is None else job.grain,
-    )
+    options = values_of(job, PieceOptions)
+    if job.thickness is None:
+        options["thickness"] = limits.thickness_mm
+    return PieceSettings(**options, tolerance=job.tolerance, material=limits.material)
 
 
 def write_pattern(
@@ -163,8 +117,8 @@ def write_pattern(
             pattern.export_dxf(
                 paths["dxf"],
                 profile=job.profile,
-                version=cast("DxfVersion | None", job.dxf_version),
-                curves=cast("Curves", job.curves),
+                version=job.dxf_version,
+                curves=job.curves,
                 timestamp=timestamp,
                 test_square=job.test_square,
             )

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, cast
+from typing import TYPE_CHECKING, Any
 
 from wrinkle_cad import settings
 from wrinkle_cad.errors import Finding
@@ -18,7 +18,6 @@ if TYPE_CHECKING:
     from wrinkle_cad.cad.exchange.choose import Chosen, StripInput
     from wrinkle_cad.cad.exchange.shapes import NamedShape
     from wrinkle_cad.cad.upper.opening import Opening
-    from wrinkle_cad.cad.upper.profiles import Direction
     from wrinkle_cad.cad.upper.stitch import Stitched
 
 
@@ -133,14 +132,14 @@ def _profiles(job: Job, opening: Opening, given: StripInput) -> tuple[object, ob
         return given.p.shape, given.q.shape
     from wrinkle_cad.cad.upper.profiles import profile_curves
 
-    p_phase, q_phase = job.phase_deg or settings.WAVE_PHASES
+    p_phase, q_phase = job.phase_deg
     return profile_curves(
         opening,
         waves=job.waves,
         height=job.height,
         phase=(math.radians(p_phase), math.radians(q_phase)),
         fade=job.fade,
-        side=cast("Direction", job.side),
+        side=job.side,
     )
 
 

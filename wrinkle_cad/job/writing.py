@@ -6,7 +6,7 @@ import datetime
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Final
 
 from wrinkle_cad import settings
 from wrinkle_cad.wrinkle.triangulated_strip import TriangulatedStrip
@@ -21,6 +21,13 @@ if TYPE_CHECKING:
     from wrinkle_cad.wrinkle.cut_pattern import Pattern
 
     from .wrinkled_upper import WrinkledUpper
+
+_VIEW_SAG: Final = 0.1
+"""mm; how far the triangles of the page's body may lie from its faces."""
+_VIEW_ANGLE: Final = 0.35
+"""rad; how far the normals of its neighbouring triangles may differ."""
+_MATRIX_BRIDGES: Final = 50_000_000
+"""The page shows no validity matrix of more possible bridges: they alone would take 50 MB."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -90,7 +97,7 @@ def page_of(made: Made, summary: Mapping[str, Any]) -> str:
 
 def _is_drawable(strip: TriangulatedStrip) -> bool:
     m, n = len(strip.triangulation.p), len(strip.triangulation.q)
-    return m * n <= settings.MATRIX_BRIDGES
+    return m * n <= _MATRIX_BRIDGES
 
 
 def timestamp_of(job: Job) -> datetime.datetime:
@@ -142,7 +149,7 @@ def _body_view(made: Made) -> MeshView | None:
     strips = {strip.name for strip in made.strips}
     faces = [face for name, own in made.upper.stitched.parts if name not in strips for face in own]
     points, triangles = mesh_of(
-        make_compound(faces), tolerance=settings.VIEW_SAG, angular_tolerance=settings.VIEW_ANGLE
+        make_compound(faces), tolerance=_VIEW_SAG, angular_tolerance=_VIEW_ANGLE
     )
     return MeshView(
         name=made.upper_name or "body",

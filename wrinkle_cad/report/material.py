@@ -10,25 +10,59 @@ from __future__ import annotations
 
 import math
 import tomllib
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import Any, Final
+from typing import Any, ClassVar, Final
 
 from wrinkle_cad.errors import InputError
+from wrinkle_cad.options.option import option
 
 _KEYS: Final = ("name", "thickness_mm", "smallest_bend_radius_mm", "largest_twist_deg")
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Limits:
-    """What a strip may not exceed; None is no limit."""
+@dataclass(frozen=True, kw_only=True)
+class LimitSettings:
+    """What a user may ask of a strip; None is no limit."""
 
-    max_fold_deg: float | None = None
-    """Largest fold angle at a bridge."""
-    max_twist_deg: float | None = None
-    """Largest turn of the normal along a bridge."""
-    max_invalid_percent: float | None = None
-    """Largest share of both rails covered by invalid bridges, inflection rulings left out."""
+    title: ClassVar[str] = "limits"
+
+    max_fold_deg: float | None = field(
+        default=None,
+        metadata=option(
+            "largest fold angle at a bridge that passes",
+            unit="deg",
+            least=0.0,
+            most=360.0,
+            flag="--max-fold",
+        ),
+    )
+    max_twist_deg: float | None = field(
+        default=None,
+        metadata=option(
+            "largest turn of the normal along a bridge that passes",
+            unit="deg",
+            least=0.0,
+            most=360.0,
+            flag="--max-twist",
+        ),
+    )
+    max_invalid_percent: float | None = field(
+        default=None,
+        metadata=option(
+            "largest share of both rails under bridges that are not locally convex, inflection"
+            " rulings left out, that passes",
+            unit="percent",
+            least=0.0,
+            most=100.0,
+            flag="--max-invalid",
+        ),
+    )
+
+
+@dataclass(frozen=True, kw_only=True)
+class Limits(LimitSettings):
+    """What a strip may not exceed, a material's own limits included; None is no limit."""
+
     smallest_bend_radius_mm: float | None = None
     """How sharply the material may be bent."""
     thickness_mm: float = 0.0

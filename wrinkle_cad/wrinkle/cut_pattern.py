@@ -17,8 +17,6 @@ from wrinkle_cad.pattern.piece.stacking import laid_out
 from wrinkle_cad.strip.sampled_strip import SampledStrip
 
 if TYPE_CHECKING:
-    from wrinkle_cad.pattern.formats.contours import Curves
-    from wrinkle_cad.pattern.formats.dxf import DxfVersion
     from wrinkle_cad.strip.flat.unrolling import Unrolling
 
 
@@ -76,8 +74,8 @@ class Pattern:
         path: str | Path,
         *,
         profile: str | Path = settings.DXF_PROFILE,
-        version: DxfVersion | None = None,
-        curves: Curves = "lines",
+        version: settings.DxfVersion | None = None,
+        curves: settings.Curves = "lines",
         timestamp: datetime | None = None,
         test_square: bool = False,
     ) -> tuple[Finding, ...]:
@@ -180,8 +178,9 @@ def _settings_by_strip(
         p_rail, q_rail = _rails(strip)
         # A band follows the rule of the rail that it shares, on its other side as well.
         shared = rules.get(p_rail) or rules.get(q_rail)
-        p_rule = rules.setdefault(p_rail, shared or chosen.notches_p)
-        q_rule = rules.setdefault(q_rail, shared or chosen.notches_q)
+        p_own, q_own = chosen.notch_rules
+        p_rule = rules.setdefault(p_rail, shared or p_own)
+        q_rule = rules.setdefault(q_rail, shared or q_own)
         yield replace(
             chosen,
             notches_p=replace(p_rule, partner_corners=tuple(corners[p_rail])),

@@ -28,6 +28,7 @@ STYLE_KEYS = {
 
 def full(kind="v"):
     return PieceSettings(
+        rulings=True,
         seam_allowance=(5.0, 8.0, 10.0, 0.0),
         notches_p=NotchRule(count=4),
         notches_q=NotchRule(count=2),

@@ -19,6 +19,7 @@ from wrinkle_cad.pattern.piece.options import NotchRule, PieceSettings
 
 VERSIONS = {"R12": "AC1009", "R2000": "AC1015", "R2010": "AC1024"}
 FULL = PieceSettings(
+    rulings=True,
     seam_allowance=(5.0, 8.0, 10.0, 0.0),
     lasting_margin=(0.0, 12.0, 0.0, 0.0),
     notches_p=NotchRule(count=4),

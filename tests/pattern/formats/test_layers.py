@@ -38,7 +38,7 @@ def test_every_shipped_profile_knows_its_roles_and_keeps_the_cut_apart():
 
 
 def test_a_users_own_map_is_used_where_it_says_something(tmp_path):
-    settings = PieceSettings(seam_allowance=(4.0,) * 4, notches_p=NotchRule(count=2))
+    settings = PieceSettings(seam_allowance=(4.0,) * 4, notches_p=NotchRule(count=2), rulings=True)
     pieces = make_pieces(*strips.cylinder(), name="tube", settings=settings)
     path = written(tmp_path, OWN)
     dxf = read_group_codes(dxf_bytes(pieces, profile=path))

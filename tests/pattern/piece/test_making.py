@@ -157,8 +157,9 @@ def test_the_texts_say_what_a_cutting_room_asks():
 
 def test_rulings_can_be_thinned_out():
     made = strips.cylinder(count=200)
-    every = make_piece(*made, name="tube").rulings
-    some = make_piece(*made, name="tube", settings=PieceSettings(ruling_spacing=5.0)).rulings
+    every = make_piece(*made, name="tube", settings=PieceSettings(rulings=True)).rulings
+    thinned = PieceSettings(rulings=True, ruling_spacing=5.0)
+    some = make_piece(*made, name="tube", settings=thinned).rulings
     assert len(every) == 397
     assert 10 <= len(some) <= 13
 
@@ -184,25 +185,28 @@ def test_laid_out_pieces_keep_apart_and_start_at_the_origin():
 @pytest.mark.parametrize(
     ("wrong", "message"),
     [
-        ({"seam_allowance": (1.0, 2.0, 3.0)}, "four widths"),
-        ({"seam_allowance": (1.0, -2.0, 3.0, 1.0)}, "four widths"),
-        ({"lasting_margin": (1.0, float("nan"), 3.0, 1.0)}, "four widths"),
-        ({"thickness": -1.0}, "at least 0"),
-        ({"thickness": float("inf")}, "at least 0"),
-        ({"tolerance": 0.0}, "above 0"),
+        ({"seam_allowance": (1.0, 2.0, 3.0)}, "4 numbers from 0 to 1000 mm, or one for all"),
+        ({"seam_allowance": (1.0, -2.0, 3.0, 1.0)}, "4 numbers from 0 to 1000 mm, or one for all"),
+        (
+            {"lasting_margin": (1.0, float("nan"), 3.0, 1.0)},
+            "4 numbers from 0 to 1000 mm, or one for all",
+        ),
+        ({"thickness": -1.0}, "from 0 to 1000 mm"),
+        ({"thickness": float("inf")}, "from 0 to 1000 mm"),
+        ({"tolerance": 0.0}, "from 1e-09 to 1000 mm"),
         ({"notch_depth": 0.0}, "above 0"),
-        ({"mitre_limit": 0.5}, "at least 1"),
-        ({"quantity": 0}, "at least 1"),
-        ({"notch_kind": "w"}, "one of slit, v"),
-        ({"surface_side": "top"}, "inside, middle, outside"),
-        ({"overlap": "ignore"}, "split, refuse"),
-        ({"hand": "both"}, "left, right"),
-        ({"grain": "up"}, "along, across or three numbers"),
-        ({"grain": None}, "along, across or three numbers"),
-        ({"grain": (0.0, 0.0, 0.0)}, "three numbers"),
-        ({"stretch": (1.0, float("nan"), 0.0)}, "three numbers"),
-        ({"drill_holes": ((0.5, 1.5),)}, "between 0 and 1"),
-        ({"drill_holes": ((0.5,),)}, "between 0 and 1"),
+        ({"mitre_limit": 0.5}, "from 1 to 100"),
+        ({"quantity": 0}, "from 1 to 1000000"),
+        ({"notch_kind": "w"}, "slit, v, t, castle, check or u"),
+        ({"surface_side": "top"}, "inside, middle or outside"),
+        ({"overlap": "ignore"}, "split or refuse"),
+        ({"hand": "both"}, "left or right"),
+        ({"grain": "up"}, "along, across or 3 numbers"),
+        ({"grain": None}, "along, across or 3 numbers"),
+        ({"grain": (0.0, 0.0, 0.0)}, "no direction"),
+        ({"stretch": (1.0, float("nan"), 0.0)}, "3 numbers"),
+        ({"drill_holes": ((0.5, 1.5),)}, "above 0 and below 1"),
+        ({"drill_holes": ((0.5,),)}, "above 0 and below 1"),
     ],
 )
 def test_settings_that_mean_nothing_are_refused(wrong, message):

@@ -6,8 +6,9 @@ by a wave of the arc length that fades out at both ends.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
-from typing import Any, Literal
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -26,7 +27,6 @@ Wave = Callable[[Floats], Floats]
 """(k,) arc lengths in mm from the rail's start -> (k,) offsets in mm."""
 Pair = float | tuple[float, float]
 Shift = float | Wave | tuple[float | Wave, float | Wave]
-Direction = Literal["out", "in", "both"]
 
 
 def wrinkle_profiles(
@@ -34,9 +34,9 @@ def wrinkle_profiles(
     *,
     waves: Pair,
     height: Shift,
-    phase: Pair = settings.WAVE_PHASES,
+    phase_deg: Pair = settings.WAVE_PHASES_DEG,
     fade: float = settings.FADE,
-    side: Direction = settings.WAVE_SIDE,
+    side: settings.WaveSide = settings.WAVE_SIDE,
     across: Shift = 0.0,
 ) -> tuple[Any, Any]:
     """Designs the two profiles of a wrinkle over an opening.
@@ -47,9 +47,9 @@ def wrinkle_profiles(
         opening: what ``carve`` returned.
         waves: full waves along the rail.
         height: mm, from the upper to the highest crest; or a callable of (k,) arc lengths in mm
-            that returns (k,) mm along the outward normal, to which waves, phase, fade and side do
-            not apply.
-        phase: rad; where in its period the wave starts.
+            that returns (k,) mm along the outward normal, to which waves, phase_deg, fade and side
+            do not apply.
+        phase_deg: where in its period the wave starts.
         fade: the share of the rail, 0 to 0.5, over which the wave grows and dies away.
         side: ``out``: the wave stays outside of the upper, from 0 to its height; ``in``: inside;
             ``both``: to either side of it.
@@ -66,7 +66,13 @@ def wrinkle_profiles(
     from wrinkle_cad.cad.build123d_objects import to_build123d
 
     p, q = profile_curves(
-        opening, waves=waves, height=height, phase=phase, fade=fade, side=side, across=across
+        opening,
+        waves=waves,
+        height=height,
+        phase=(math.radians(_one(phase_deg, 0)), math.radians(_one(phase_deg, 1))),
+        fade=fade,
+        side=side,
+        across=across,
     )
     return to_build123d(curve_edges(p)[0], label="P"), to_build123d(curve_edges(q)[0], label="Q")
 
@@ -76,9 +82,9 @@ def profile_curves(
     *,
     waves: Pair,
     height: Shift,
-    phase: Pair = settings.WAVE_PHASES,
+    phase: Pair = 0.0,
     fade: float = settings.FADE,
-    side: Direction = settings.WAVE_SIDE,
+    side: settings.WaveSide = settings.WAVE_SIDE,
     across: Shift = 0.0,
 ) -> tuple[Directrix, Directrix]:
     """Returns the profiles of ``wrinkle_profiles`` as directrices."""
@@ -105,7 +111,7 @@ def _one(value: Any, i: int) -> Any:
 
 
 def _wave_shape(
-    rail: Rail, waves: float, phase: float, fade: float, side: Direction, name: str
+    rail: Rail, waves: float, phase: float, fade: float, side: settings.WaveSide, name: str
 ) -> Floats:
     """Returns (k,) the wave of height 1 at the points of a rail."""
     most = settings.WAVES_PER_POINT * len(rail.points)

@@ -9,7 +9,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise
-from typing import Literal
 
 import numpy as np
 import shapely
@@ -22,8 +21,6 @@ from wrinkle_cad.pattern.piece.piece import Floats
 from wrinkle_cad.strip.curve.cubic import cubic_through
 from wrinkle_cad.strip.curve.polyline import arc_lengths, row_lengths, segment_gaps
 from wrinkle_cad.strip.portable import dot
-
-Curves = Literal["lines", "arcs", "splines"]
 
 
 def with_arcs(points: Floats, *, tolerance: float) -> Floats:

@@ -16,8 +16,9 @@ from ezdxf.layouts import Modelspace
 from wrinkle_cad import settings
 from wrinkle_cad.errors import Finding
 from wrinkle_cad.pattern.piece.piece import Floats, PatternPiece
+from wrinkle_cad.settings import Curves
 
-from .contours import Curves, closed_spline, with_arcs
+from .contours import closed_spline, with_arcs
 from .drawing import Drawing, Stroke, draw
 from .layers import LINE_TYPES, LayerStyle, Profile, Role
 from .plain_text import ascii_text, text_changed

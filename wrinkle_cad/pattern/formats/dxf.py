@@ -14,7 +14,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from datetime import datetime
 from pathlib import Path
-from typing import Final, Literal, get_args
+from typing import Final, get_args
 
 from ezdxf.addons import gerber_D6673, r12export
 from ezdxf.document import Drawing
@@ -24,14 +24,13 @@ from wrinkle_cad.errors import ExportError, Finding, InputError
 from wrinkle_cad.files.atomic import write_atomically
 from wrinkle_cad.pattern.piece.piece import PatternPiece
 from wrinkle_cad.pattern.piece.stacking import laid_out
+from wrinkle_cad.settings import Curves, DxfVersion
 
 from .aama import block_document, scale_piece
-from .contours import Curves
 from .cutter import cutter_document
 from .layers import Profile, profile_from
 from .stamping import EPOCH, stamped
 
-DxfVersion = Literal["R12", "R2000", "R2010"]
 VERSIONS: Final[tuple[str, ...]] = get_args(DxfVersion)
 CURVES: Final[tuple[str, ...]] = get_args(Curves)
 

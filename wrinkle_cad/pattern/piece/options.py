@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-import math
-from dataclasses import dataclass
-from typing import Final, Literal, get_args
+from dataclasses import dataclass, field
+from typing import ClassVar, Final, Literal
 
 from wrinkle_cad import settings
 from wrinkle_cad.errors import InputError
+from wrinkle_cad.options.checking import check_options
+from wrinkle_cad.options.option import option
 
 SIDES: Final = ("P", "Q", "start", "end")
 """The sides of a strip in the order of every per-side option."""
@@ -20,99 +21,219 @@ SurfaceSide = Literal["inside", "middle", "outside"]
 Overlap = Literal["split", "refuse"]
 Hand = Literal["left", "right"]
 
+_LONGEST: Final = 1e6
+"""mm; a kilometer: no length of a pattern is larger."""
+_LONGEST_VECTOR: Final = 1e9
+
+_NOTCHES: Final = option(
+    "pairs of notches on each long seam, at equal distances", least=0, most=10_000
+)
+_NOTCH_SPACING: Final = option(
+    "distance of the notches, instead of their number", unit="mm", above=0.0, most=_LONGEST
+)
+_NOTCH_AT_P: Final = option(
+    "positions of the notches on P instead", unit="mm", least=0.0, most=_LONGEST
+)
+_NOTCH_AT_Q: Final = option(
+    "positions of the notches on Q instead", unit="mm", least=0.0, most=_LONGEST
+)
+
 
 @dataclass(frozen=True, slots=True)
 class NotchRule:
-    """Where the notches of one side stand; at most one of the three is given.
+    """Where the notches of one side stand; at most one of the first three is given."""
 
-    Attributes:
-        count: notches at equal distances, none at the ends.
-        spacing: mm of seam between notches; rounded so that all distances are equal.
-        at: mm of seam from the rail's start, one per notch.
-        partner_corners: mm of seam at which the piece sewn to this side has corners; notches keep
-            away from them as well, so that both pieces get the same ones.
-    """
-
-    count: int = 0
-    spacing: float | None = None
-    at: tuple[float, ...] = ()
+    count: int = field(default=0, metadata=_NOTCHES)
+    """Notches at equal distances, none at the ends."""
+    spacing: float | None = field(default=None, metadata=_NOTCH_SPACING)
+    """Mm of seam between notches; rounded so that all distances are equal."""
+    at: tuple[float, ...] = field(default=(), metadata=_NOTCH_AT_P)
+    """Mm of seam from the rail's start, one per notch."""
     partner_corners: tuple[float, ...] = ()
+    """Mm of seam at which the piece sewn to this side has corners; notches keep away from them as
+    well, so that both pieces get the same ones."""
 
     def __post_init__(self) -> None:
-        if self.count < 0:
-            raise InputError(f"notches - count {self.count} - at least 0 - give a whole number")
-        if self.spacing is not None and not 0.0 < self.spacing < math.inf:
-            raise InputError(f"notches - spacing {self.spacing} mm - above 0 - give a length")
+        check_options(self, what="notches, ")
         if sum((self.count > 0, self.spacing is not None, bool(self.at))) > 1:
-            raise InputError("notches - count, spacing and positions given together - one - choose")
+            raise InputError(
+                "notches are given in two ways: give their number, their spacing or their positions"
+                " on a side, not several of these."
+            )
 
 
-@dataclass(frozen=True, slots=True)
-class PieceSettings:
-    """Everything about a piece that is not its shape. Lengths in mm.
+@dataclass(frozen=True, kw_only=True)
+class PieceOptions:
+    """What scripts, flags and job files alike may say about the pattern's pieces.
 
-    Attributes:
-        seam_allowance: on P, Q, the start and the end.
-        lasting_margin: added to the allowance of the same side.
-        mitre_limit: corners of the allowance reach at most this many widths out.
-        notches_p, notches_q: where the notches of the two seams stand.
-        notch_kind, notch_depth, notch_width: what they look like.
-        thickness: of the material; lengths are then taken at its middle, the neutral layer.
-        surface_side: which side of the material the strip's surface is: ``inside`` (the material
-            lies on the right side, where the surface normal points), ``middle``, ``outside``.
-        grain: direction of the grain line: ``along`` or ``across`` the strip, or a direction in
-            space, which is laid on the middle of the strip and unrolled with it.
-        stretch: the same for the direction of stretch; None draws none.
-        drill_holes: (along, across) as shares 0...1 of the rails and of the way from P to Q.
-        rulings: draw the rulings. ``ruling_spacing`` leaves out those closer together than this.
-        hand: the foot this strip is for; the piece for the other one is then made as well.
-        size, quantity, material: what the texts say.
-        tolerance: chord tolerance of the outline; shorter segments are merged.
-        overlap: what happens to a pattern that overlaps itself when flat.
+    Per side means on P, on Q, at the start and at the end.
     """
 
-    seam_allowance: PerSide = settings.SEAM_ALLOWANCE
-    lasting_margin: PerSide = settings.SEAM_ALLOWANCE
-    mitre_limit: float = settings.MITRE_LIMIT
-    notches_p: NotchRule = NotchRule()
-    notches_q: NotchRule = NotchRule()
-    notch_kind: NotchKind = "slit"
-    notch_depth: float = settings.NOTCH_DEPTH
-    notch_width: float = settings.NOTCH_WIDTH
-    thickness: float = 0.0
-    surface_side: SurfaceSide = "middle"
-    grain: Direction = "along"
-    stretch: Direction | None = None
-    drill_holes: tuple[tuple[float, float], ...] = ()
-    rulings: bool = True
-    ruling_spacing: float = 0.0
-    hand: Hand | None = None
-    size: str = settings.PIECE_SIZE
-    quantity: int = 1
-    material: str = ""
-    tolerance: float = settings.TOLERANCE
-    overlap: Overlap = settings.PATTERN_OVERLAP
+    title: ClassVar[str] = "the pattern's pieces"
+
+    seam_allowance: PerSide = field(
+        default=(0.0, 0.0, 0.0, 0.0),
+        metadata=option(
+            "widths of the seam allowance",
+            unit="mm",
+            least=0.0,
+            most=1000.0,
+            is_one_for_all=True,
+            metavar="P,Q,START,END",
+        ),
+    )
+    lasting_margin: PerSide = field(
+        default=(0.0, 0.0, 0.0, 0.0),
+        metadata=option(
+            "widths added to the allowance of the same side",
+            unit="mm",
+            least=0.0,
+            most=1000.0,
+            is_one_for_all=True,
+            metavar="P,Q,START,END",
+        ),
+    )
+    mitre_limit: float = field(
+        default=2.0,
+        metadata=option(
+            "how far corners of the allowance reach out, in widths",
+            least=1.0,
+            most=100.0,
+            metavar="N",
+        ),
+    )
+    notches: int = field(default=0, metadata=_NOTCHES)
+    notch_spacing: float | None = field(default=None, metadata=_NOTCH_SPACING)
+    notch_at_p: tuple[float, ...] = field(default=(), metadata=_NOTCH_AT_P)
+    notch_at_q: tuple[float, ...] = field(default=(), metadata=_NOTCH_AT_Q)
+    notch_kind: NotchKind = field(default="slit", metadata=option("shape of the notches"))
+    notch_depth: float = field(
+        default=3.0,
+        metadata=option("how deep notches are cut", unit="mm", above=0.0, most=1000.0),
+    )
+    notch_width: float = field(
+        default=2.0,
+        metadata=option("opening of v, u, t and castle notches", unit="mm", least=0.0, most=1000.0),
+    )
+    drill_holes: tuple[tuple[float, float], ...] = field(
+        default=(),
+        metadata=option(
+            "a hole at shares of the rails and of the way from P to Q; repeatable",
+            above=0.0,
+            below=1.0,
+            flag="--drill-hole",
+            metavar="ALONG,ACROSS",
+        ),
+    )
+    thickness: float | None = field(
+        default=None,
+        metadata=option(
+            "of the material: lengths are taken at its middle, the neutral layer",
+            unit="mm",
+            least=0.0,
+            most=1000.0,
+            when_none="the material's, or 0",
+        ),
+    )
+    surface_side: SurfaceSide = field(
+        default="middle",
+        metadata=option(
+            "the side of the material that the surface is; inside: the material lies where the"
+            " surface normal points"
+        ),
+    )
+    grain: Direction = field(
+        default="along",
+        metadata=option(
+            "the grain line: along or across the strip, or a direction in space",
+            least=-_LONGEST_VECTOR,
+            most=_LONGEST_VECTOR,
+            metavar="along|across|X,Y,Z",
+        ),
+    )
+    stretch: Direction | None = field(
+        default=None,
+        metadata=option(
+            "the direction of stretch, likewise",
+            least=-_LONGEST_VECTOR,
+            most=_LONGEST_VECTOR,
+            when_none="not drawn",
+            metavar="along|across|X,Y,Z",
+        ),
+    )
+    rulings: bool = field(default=False, metadata=option("draw the rulings"))
+    ruling_spacing: float = field(
+        default=0.0,
+        metadata=option(
+            "leave out rulings nearer to each other than this",
+            unit="mm",
+            least=0.0,
+            most=_LONGEST,
+        ),
+    )
+    hand: Hand | None = field(
+        default=None, metadata=option("the foot this strip is for; adds the mirrored twin")
+    )
+    size: str = field(
+        default=settings.PIECE_SIZE, metadata=option("the size that is written on the pieces")
+    )
+    quantity: int = field(
+        default=1,
+        metadata=option("how many of each piece are to be cut", least=1, most=1_000_000),
+    )
+    overlap: Overlap = field(
+        default="split",
+        metadata=option("what to do with a flat strip that covers itself"),
+    )
 
     def __post_init__(self) -> None:
-        for name in ("seam_allowance", "lasting_margin"):
-            _check_per_side(name, getattr(self, name))
-        for name in ("thickness", "ruling_spacing", "notch_width"):
-            _check_length(name, getattr(self, name), at_least=True)
-        for name in ("tolerance", "notch_depth"):
-            _check_length(name, getattr(self, name), at_least=False)
-        if not 1.0 <= self.mitre_limit < math.inf:
-            raise InputError(f"mitre_limit - {self.mitre_limit} - at least 1 - give a larger one")
-        if self.quantity < 1:
-            raise InputError(f"quantity - {self.quantity} - at least 1 - give a whole number")
-        for name, allowed in _CHOICES.items():
-            if getattr(self, name) not in allowed:
-                said = ", ".join(str(choice) for choice in allowed)
-                raise InputError(f"{name} - {getattr(self, name)!r} - one of {said} - choose one")
-        for name in ("grain", "stretch"):
-            _check_direction(name, getattr(self, name))
-        for hole in self.drill_holes:
-            if not all(0.0 < share < 1.0 for share in hole) or len(hole) != 2:
-                raise InputError(f"drill_holes - {hole} - two shares between 0 and 1 - move it in")
+        check_options(self)
+        check_piece(self)
+
+
+def check_piece(chosen: PieceOptions, error: type[InputError] = InputError) -> None:
+    """Raises an ``InputError`` when a direction has no length or notches are asked for twice."""
+    for name in ("grain", "stretch"):
+        direction = getattr(chosen, name)
+        if isinstance(direction, tuple) and not any(direction):
+            raise error(f"{name} cannot be (0, 0, 0), which is no direction: give another one.")
+    if chosen.notches and chosen.notch_spacing is not None:
+        raise error(
+            f"notches is {chosen.notches} and notch_spacing {chosen.notch_spacing:g} mm: give the"
+            " number or the spacing, not both."
+        )
+
+
+@dataclass(frozen=True, kw_only=True)
+class PieceSettings(PieceOptions):
+    """Everything about a piece that is not its shape. Lengths in mm."""
+
+    notches_p: NotchRule | None = None
+    """Where the notches of P stand; as ``notches`` and the rest say when None."""
+    notches_q: NotchRule | None = None
+    """Likewise of Q."""
+    material: str = ""
+    """Name of the material, for the texts."""
+    tolerance: float = field(
+        default=settings.TOLERANCE,
+        metadata=option(
+            "chord tolerance of the outline; shorter segments are merged",
+            unit="mm",
+            least=1e-9,
+            most=1000.0,
+        ),
+    )
+
+    @property
+    def notch_rules(self) -> tuple[NotchRule, NotchRule]:
+        """Where the notches of P and of Q stand."""
+        return (
+            self.notches_p or self._rule(self.notch_at_p),
+            self.notches_q or self._rule(self.notch_at_q),
+        )
+
+    def _rule(self, at: tuple[float, ...]) -> NotchRule:
+        return NotchRule(at=at) if at else NotchRule(self.notches, self.notch_spacing)
 
     @property
     def widths(self) -> PerSide:
@@ -126,35 +247,5 @@ class PieceSettings:
     @property
     def neutral_offset(self) -> float:
         """Mm from the surface to the neutral layer, along the surface normal (right side)."""
-        return {"inside": 0.5, "middle": 0.0, "outside": -0.5}[self.surface_side] * self.thickness
-
-
-_CHOICES: Final[dict[str, tuple[object, ...]]] = {
-    "notch_kind": get_args(NotchKind),
-    "surface_side": get_args(SurfaceSide),
-    "overlap": get_args(Overlap),
-    "hand": (None, *get_args(Hand)),
-}
-
-
-def _check_per_side(name: str, widths: PerSide) -> None:
-    if len(widths) != 4 or not all(0.0 <= width < math.inf for width in widths):
-        raise InputError(f"{name} - {widths} mm - four widths (P, Q, start, end) from 0 - correct")
-
-
-def _check_length(name: str, length: float, *, at_least: bool) -> None:
-    fits = length >= 0.0 if at_least else length > 0.0
-    if not fits or not math.isfinite(length):
-        limit = "at least 0" if at_least else "above 0"
-        raise InputError(f"{name} - {length} mm - {limit} - give a length")
-
-
-def _check_direction(name: str, direction: Direction | None) -> None:
-    if direction is None and name == "stretch":
-        return
-    if isinstance(direction, str):
-        if direction in ("along", "across"):
-            return
-    elif direction is not None and len(direction) == 3 and 0.0 < math.hypot(*direction) < math.inf:
-        return
-    raise InputError(f"{name} - {direction!r} - along, across or three numbers - give one of them")
+        share = {"inside": 0.5, "middle": 0.0, "outside": -0.5}[self.surface_side]
+        return share * (self.thickness or 0.0)

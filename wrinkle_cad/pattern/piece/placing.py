@@ -24,9 +24,10 @@ def seam_arcs(
     part stands on one.
     """
     p_corners, q_corners = seam_corners(strip, parts)
+    p_rule, q_rule = chosen.notch_rules
     return (
-        _rail_arcs(float(strip.p_arc[-1]), p_corners, chosen.notches_p),
-        _rail_arcs(float(strip.q_arc[-1]), q_corners, chosen.notches_q),
+        _rail_arcs(float(strip.p_arc[-1]), p_corners, p_rule),
+        _rail_arcs(float(strip.q_arc[-1]), q_corners, q_rule),
     )
 
 

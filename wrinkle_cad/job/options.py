@@ -1,0 +1,78 @@
+"""What a user may ask of a run beside its strips, waves, pieces and limits."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import ClassVar
+
+from wrinkle_cad import settings
+from wrinkle_cad.options.option import option
+from wrinkle_cad.report.material import LimitSettings
+
+
+@dataclass(frozen=True, kw_only=True)
+class ShapeSettings:
+    """Which shapes of the file are taken."""
+
+    title: ClassVar[str] = "which shapes"
+
+    p: str | None = field(
+        default=None,
+        metadata=option("directrix P, as inspect prints it", metavar="NAME|INDEX"),
+    )
+    q: str | None = field(
+        default=None, metadata=option("directrix Q, likewise", metavar="NAME|INDEX")
+    )
+    upper: str | None = field(
+        default=None, metadata=option("the upper surface, likewise", metavar="NAME|INDEX")
+    )
+    unit: settings.Unit | None = field(
+        default=None, metadata=option("unit of a file that states none")
+    )
+
+
+@dataclass(frozen=True, kw_only=True)
+class FileSettings:
+    """Which files are written, and how."""
+
+    title: ClassVar[str] = "the files"
+
+    profile: str = field(
+        default=settings.DXF_PROFILE,
+        metadata=option(
+            "layers of the DXF: cutter, aama, astm or a file of your own",
+            may_be_file=True,
+            metavar="NAME|FILE.toml",
+        ),
+    )
+    dxf_version: settings.DxfVersion | None = field(
+        default=None,
+        metadata=option("version of the DXF", when_none="R2000; R12 for aama, astm"),
+    )
+    curves: settings.Curves = field(
+        default="lines", metadata=option("what curved cut lines are written as")
+    )
+    test_square: bool = field(
+        default=False, metadata=option("add a square of 100 mm to the DXF, to check the scale")
+    )
+    svg: bool = field(default=False, metadata=option("write the pattern as SVG, too"))
+    pdf: bool = field(
+        default=False, metadata=option("write the pattern as PDF, 1:1 on A4 sheets, too")
+    )
+    step_schema: settings.StepSchema = field(
+        default=settings.STEP_SCHEMA, metadata=option("schema of the STEP file")
+    )
+
+
+@dataclass(frozen=True, kw_only=True)
+class JudgingSettings(LimitSettings):
+    """What the strips are judged by, and what comes of it."""
+
+    material: Path | None = field(
+        default=None,
+        metadata=option("a material's limits and thickness", metavar="FILE.toml"),
+    )
+    strict: bool = field(
+        default=False, metadata=option("a missed limit is a failure (exit code 1)")
+    )

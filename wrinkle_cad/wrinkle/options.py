@@ -1,0 +1,51 @@
+"""What a user may ask of a strip."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import ClassVar
+
+from wrinkle_cad import settings
+from wrinkle_cad.options.checking import check_options
+from wrinkle_cad.options.option import option
+
+
+@dataclass(frozen=True, kw_only=True)
+class StripSettings:
+    """How a strip is sampled, searched and made into a surface."""
+
+    title: ClassVar[str] = "the strip"
+
+    tolerance: float = field(
+        default=settings.TOLERANCE,
+        metadata=option(
+            "largest distance of a chord from its curve", unit="mm", least=1e-9, most=1000.0
+        ),
+    )
+    max_chord: float | None = field(
+        default=None,
+        metadata=option("longest chord", unit="mm", least=1e-6, most=1e6, when_none="unlimited"),
+    )
+    planarity: float | None = field(
+        default=None,
+        metadata=option(
+            "slack of the convexity test", unit="mm", least=1e-15, most=1e3, when_none="derived"
+        ),
+    )
+    surface: settings.Surface = field(
+        default=settings.SURFACE,
+        metadata=option("its faces: cones, whose banks are the exact curves, or flat facets"),
+    )
+    criteria: tuple[settings.Criterion, ...] = field(
+        default=settings.CRITERIA,
+        metadata=option("what to minimize, the most important first", metavar="A,B"),
+    )
+    search: settings.Search = field(
+        default=settings.SEARCH, metadata=option("the exact optimum, or one step ahead")
+    )
+    energy: settings.Energy = field(
+        default=settings.ENERGY, metadata=option("how bending is measured")
+    )
+
+    def __post_init__(self) -> None:
+        check_options(self)
