@@ -268,9 +268,11 @@ KNOT_HALVINGS: Final = 12
 PLANE_GAP: Final = 2e-8
 """mm; a curve and an apex within this of one plane make a planar face instead of a cone."""
 
+
 def planarity_from(tolerance: float) -> float:
     """Returns the planarity in mm that fits a chord tolerance in mm."""
     return PLANARITY_PER_TOLERANCE * tolerance
+
 
 RAIL_POINTS: Final = 161
 """A rail is laid on the upper at so many points."""

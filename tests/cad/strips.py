@@ -19,6 +19,7 @@ from wrinkle_cad.cad.exchange.write import write_step
 from wrinkle_cad.cad.faces.shell import build_shell
 from wrinkle_cad.cad.kernel.curves import edge_curve
 from wrinkle_cad.cad.kernel.measures import is_valid, tolerance_of
+from wrinkle_cad.cad.kernel.mesh import binary_stl, mesh_of
 from wrinkle_cad.cad.kernel.splines import make_curve
 from wrinkle_cad.cad.kernel.topology import faces_of, free_edges, shells_of
 from wrinkle_cad.cad.rail.directrix import Directrix, make_directrix, orient_alike, sample_directrix
@@ -159,3 +160,25 @@ def freecad_judgement(
     )
     rows = [row.split()[1:] for row in done.stdout.splitlines() if row.startswith("SEEN")]
     return [(int(row[0]), int(row[1]), row[2] == "1", float(row[3])) for row in rows]
+
+
+def stl_faults(shell: TopoDS_Shape, tolerance: float = 0.05) -> list[str]:
+    """What a slicer would not like in the STL file of a flat strip; empty if nothing."""
+    records = np.frombuffer(
+        binary_stl(*mesh_of(shell, tolerance=tolerance))[84:],
+        dtype=[("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("tag", "<u2")],
+    )
+    corners = records["corners"].astype(np.float64)
+    sides = np.roll(corners, -1, axis=1) - corners
+    longest = np.linalg.norm(sides, axis=2).max(axis=1)
+    across = np.cross(sides[:, 0], sides[:, 1])
+    doubled = np.linalg.norm(across, axis=1)
+    faults = []
+    if (doubled <= 1e-6 * longest**2).any():
+        faults.append(f"{(doubled <= 1e-6 * longest**2).sum()} triangles without area")
+    keys = {tuple(sorted(map(tuple, triangle))) for triangle in corners.tolist()}
+    if len(keys) != len(corners):
+        faults.append(f"{len(corners) - len(keys)} triangles twice")
+    if (across @ across[0] <= 0.0).any():
+        faults.append(f"{(across @ across[0] <= 0.0).sum()} triangles face the other way")
+    return faults

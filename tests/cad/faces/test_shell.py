@@ -316,9 +316,10 @@ def test_triangles_without_area_are_left_out_and_closed_over(tmp_path: Path) -> 
     p = [(0, 0, 0), (10, 0, 0), (20, 5, 0), (30, 20, 9)]
     q = [(5, 10, 0), (20, 0, 0), (30, 15, 0)]
     strip = given_strip(p, q, [Q_STEP, P_STEP, P_STEP, Q_STEP, P_STEP])
-    for kind in KINDS:
+    # The first two of the four faces lie in one plane.
+    for kind, count in (("cones", 3), ("facets", 4)):
         shell = strip.shell(kind)
-        assert len(faces_of(shell)) == 4
+        assert len(faces_of(shell)) == count
         # The bridge of 20 mm is replaced by the bank and the bridge of 10 mm each beside it.
         lengths = [round(length_of(edge), 6) for edge in edges_of(shell)]
         assert lengths.count(10.0) == 2

@@ -31,10 +31,15 @@ def make_wire(loop: Border) -> TopoDS_Wire:
     return wire
 
 
-def plane_face(loop: Border) -> TopoDS_Face:
-    """Returns the planar face inside a loop, which runs counter-clockwise seen from outside."""
+def plane_face(loop: Border, normal: Floats | None = None) -> TopoDS_Face:
+    """Returns the planar face inside a loop, which runs counter-clockwise seen from outside.
+
+    Args:
+        loop: its edges.
+        normal: (3,); to the outside. By default it is that of the polygon of the edges' poles.
+    """
     poles = border_poles(loop)
-    normal = loop_normal(poles)
+    normal = loop_normal(poles) if normal is None else normal
     along = poles[1] - poles[0]
     along = along if along.any() else poles[-1] - poles[0]
     axes = gp_Ax3(gp_Pnt(*poles[0].tolist()), gp_Dir(*normal.tolist()), gp_Dir(*along.tolist()))

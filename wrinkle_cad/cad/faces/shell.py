@@ -4,10 +4,11 @@ Vertices and edges are made once and shared, so nothing is sewn and no tolerance
 belongs together. Every face lies with its normal on the side from which the triangle p[i] p[i+1]
 q[j] is counter-clockwise.
 
-Facets: the triangles. Cones: for each run of steps with one apex, the cone over that stretch of
-the rail, or the plane where these lie in one. Where the rails meet, the chord of the first bank
-edge is a bridge, and between the chord and the rail lies a cone too. Faces not wider than 5e-6 mm
-(2e-7 ... 5e-6, by the strip's size) are left out and closed over; their rail is then the border.
+Facets: the triangles. Cones: for each run of steps in one plane, the plane between the rails, and
+elsewhere for each run of steps with one apex the cone over that stretch of the rail. Where the
+rails meet, the chord of the first bank edge is a bridge, and between the chord and the rail lies a
+cone too. Faces not wider than 5e-6 mm (2e-7 ... 5e-6, by the strip's size) are left out and closed
+over; their rail is then the border.
 """
 
 from __future__ import annotations
@@ -23,13 +24,15 @@ from wrinkle_cad.cad.kernel.steps import kernel_step
 from wrinkle_cad.cad.rail.directrix import Directrix
 from wrinkle_cad.errors import CadError, InputError
 from wrinkle_cad.strip.curve.sampling import Samples
-from wrinkle_cad.strip.triangulation import P_STEP, Triangulation
+from wrinkle_cad.strip.flat.planes import planar_runs, spans_of
+from wrinkle_cad.strip.flat.unrolling import exact_rails
+from wrinkle_cad.strip.triangulation import P_STEP, Q_STEP, Triangulation
 
 from .cone_faces import cone_face
-from .face_borders import Border, flipped
-from .fans import Fan, fans_of, thin_triangles
+from .face_borders import Border, BorderEdge, flipped
+from .fans import Fan, FlatPart, fan_between, fans_of, flat_part, thin_triangles
 from .plane_faces import is_plane_sector, plane_face
-from .skeleton import Skeleton, thin_limit
+from .skeleton import Skeleton
 from .slivers import cut_at_knots
 
 Floats = NDArray[np.float64]
@@ -68,13 +71,23 @@ def build_shell(
         raise InputError(f"surface - {kind!r} - one of {', '.join(KINDS)} - choose one")
     _check_samples(triangulation, p_samples, q_samples)
     has_curves = kind == "cones"
-    thin = thin_triangles(triangulation, thin_limit(triangulation))
+    samples = p_samples, q_samples
+    skeleton = Skeleton(triangulation, (p, q), samples, has_curves=has_curves)
     corners = (_corners(p, p_samples), _corners(q, q_samples))
-    fans = fans_of(triangulation, corners, thin, is_merged=is_merged and has_curves)
-    skeleton = Skeleton(triangulation, (p, q), (p_samples, q_samples), has_curves=has_curves)
+    runs = np.full(len(triangulation.steps), -1, dtype=np.int64)
+    if has_curves:
+        cells = exact_rails((p.point_at, q.point_at), samples)
+        parameters = p_samples.parameters, q_samples.parameters
+        runs = planar_runs(
+            triangulation, cells, parameters, settings.PLANE_GAP, is_merged=is_merged
+        )
     with kernel_step("make the faces of a strip"):
+        thin = thin_triangles(triangulation, skeleton.limit)
+        spans = [_trimmed(triangulation, skeleton, thin, *span) for span in spans_of(runs)]
+        parts = [flat_part(triangulation, corners, *span) for span in spans if span[0] < span[1]]
+        fans = fans_of(triangulation, corners, thin, runs >= 0, is_merged=is_merged and has_curves)
         kept = [fan for fan in fans if not (fan.is_thin and skeleton.leave_out(fan))]
-        faces = [face for fan in kept for face in _faces_of(fan, skeleton)]
+        faces = _faces_in_order(parts, kept, skeleton)
     if not faces:
         raise CadError(
             "make the faces of a strip",
@@ -103,20 +116,59 @@ def _corners(rail: Directrix, samples: Samples) -> Bools:
     return np.asarray(apart <= 1e-12 * rail.length, dtype=np.bool_)
 
 
+def _trimmed(
+    triangulation: Triangulation, skeleton: Skeleton, thin: Bools, first: int, last: int
+) -> tuple[int, int]:
+    """Returns a run of steps in one plane without what is too thin for a face at its ends."""
+
+    def is_left_out(step: int) -> bool:
+        fan = fan_between(triangulation, step, step + 1, is_thin=True)
+        return bool(thin[step]) and skeleton.leave_out(fan)
+
+    while first < last and is_left_out(first):
+        first += 1
+    while first < last and is_left_out(last - 1):
+        last -= 1
+    return first, last
+
+
+def _faces_in_order(
+    parts: list[FlatPart], fans: list[Fan], skeleton: Skeleton
+) -> list[TopoDS_Shape]:
+    """Returns the faces of flat parts and fans along the strip."""
+    faces = {part.early: [_plane_of(part, skeleton)] for part in parts}
+    faces |= {fan.early: _faces_of(fan, skeleton) for fan in fans}
+    return [face for _, row in sorted(faces.items()) for face in row]
+
+
+def _plane_of(part: FlatPart, skeleton: Skeleton) -> TopoDS_Shape:
+    borders: dict[int, list[BorderEdge]] = {P_STEP: [], Q_STEP: []}
+    for bank in part.banks:
+        borders[bank.side] += skeleton.bank(bank)
+    loop = (
+        *borders[P_STEP],
+        *skeleton.bridge(part.late),
+        *flipped(tuple(borders[Q_STEP])),
+        *flipped(skeleton.bridge(part.early)),
+    )
+    return plane_face(loop, part.normal)
+
+
 def _faces_of(fan: Fan, skeleton: Skeleton) -> list[TopoDS_Shape]:
-    bank, early, late = skeleton.bank(fan), skeleton.bridge(fan.early), skeleton.bridge(fan.late)
-    corner = skeleton.corner(1 - fan.side, fan.apex)
+    bank, side = skeleton.bank(fan.bank), fan.bank.side
+    early, late = skeleton.bridge(fan.early), skeleton.bridge(fan.late)
+    corner = skeleton.corner(1 - side, fan.apex)
     apex, vertex = skeleton.points[corner], skeleton.vertex(corner)
     # Towards the apex is from P to Q for a bank on P, and from Q to P for a bank on Q.
-    to_apex, from_apex = (late, flipped(early)) if fan.side == P_STEP else (flipped(late), early)
+    to_apex, from_apex = (late, flipped(early)) if side == P_STEP else (flipped(late), early)
     (edge,) = bank
     if is_plane_sector(edge.shape, apex):
         loop: Border = (*bank, *to_apex, *from_apex)
-        return [plane_face(loop if fan.side == P_STEP else flipped(loop))]
+        return [plane_face(loop if side == P_STEP else flipped(loop))]
     sectors = cut_at_knots((edge, to_apex, from_apex), apex, vertex, skeleton.limit)
-    knots = skeleton.parameters(fan)
+    knots = skeleton.parameters(fan.bank)
     faces = [cone_face(*sector, apex, vertex, knots) for sector in sectors]
-    return [face if fan.side == P_STEP else face.Reversed() for face in faces]
+    return [face if side == P_STEP else face.Reversed() for face in faces]
 
 
 def _shell_of(faces: list[TopoDS_Shape]) -> TopoDS_Shell:

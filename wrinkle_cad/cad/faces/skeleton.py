@@ -27,7 +27,7 @@ from .face_borders import (
     straight_edge,
     sub_curve,
 )
-from .fans import Fan
+from .fans import Bank, Fan
 
 Floats = NDArray[np.float64]
 
@@ -58,7 +58,7 @@ class Skeleton:
         self._starts = (0, len(triangulation.p))
         self._vertices: dict[int, TopoDS_Vertex] = {}
         self._bridges: dict[int, Border] = {}
-        self._banks: dict[Fan, Border] = {}
+        self._banks: dict[Bank, Border] = {}
         self._replaced: dict[int, tuple[Fan, float]] = {}
 
     def corner(self, side: int, index: int) -> int:
@@ -71,15 +71,15 @@ class Skeleton:
             self._vertices[corner] = make_vertex(self.points[corner])
         return self._vertices[corner]
 
-    def parameters(self, fan: Fan) -> Floats:
-        """Returns (k,): parameters of the rail at the samples along a fan's bank."""
-        return self._parameters[fan.side][fan.start : fan.end + 1]
+    def parameters(self, bank: Bank) -> Floats:
+        """Returns (k,): parameters of the rail at the samples along a bank."""
+        return self._parameters[bank.side][bank.start : bank.end + 1]
 
-    def bank(self, fan: Fan) -> Border:
-        """Returns the border of a fan on its rail, along the rail."""
-        if fan not in self._banks:
-            self._banks[fan] = self._make_bank(fan)
-        return self._banks[fan]
+    def bank(self, bank: Bank) -> Border:
+        """Returns the border along a bank, in the direction of its rail."""
+        if bank not in self._banks:
+            self._banks[bank] = self._make_bank(bank)
+        return self._banks[bank]
 
     def bridge(self, at: int) -> Border:
         """Returns the border along a bridge of the path, from P to Q; empty if it has no length."""
@@ -99,11 +99,12 @@ class Skeleton:
         Raises:
             CadError: two such fans both have the bridge between them as their longest border.
         """
-        at = [self.corner(fan.side, fan.start), self.corner(fan.side, fan.end)]
-        start, end, apex = self.points[[*at, self.corner(1 - fan.side, fan.apex)]]
+        bank = fan.bank
+        at = [self.corner(bank.side, bank.start), self.corner(bank.side, bank.end)]
+        start, end, apex = self.points[[*at, self.corner(1 - bank.side, fan.apex)]]
         spans = [norm(b - a) for a, b in ((start, apex), (end, apex), (start, end))]
         ends = ((start, apex), (end, apex), (start, end))[int(np.argmax(spans))]
-        gap = _largest_gap(np.vstack((border_poles(self.bank(fan)), start, end, apex)), *ends)
+        gap = _largest_gap(np.vstack((border_poles(self.bank(bank)), start, end, apex)), *ends)
         if gap > self.limit:
             return False
         # On a tie, as where the rails meet, the rail itself stays and the bridge goes.
@@ -120,13 +121,13 @@ class Skeleton:
 
     def _around(self, at: int, fan: Fan, gap: float) -> Border:
         """Returns the border that stands for a bridge of a fan left out: its other two."""
-        bank = self.bank(fan)
+        bank, is_p = self.bank(fan.bank), fan.bank.side == P_STEP
         if at == fan.late:
             other = self.bridge(fan.early)
-            border = (*flipped(bank), *other) if fan.side == P_STEP else (*other, *bank)
+            border = (*flipped(bank), *other) if is_p else (*other, *bank)
         else:
             other = self.bridge(fan.late)
-            border = (*bank, *other) if fan.side == P_STEP else (*other, *flipped(bank))
+            border = (*bank, *other) if is_p else (*other, *flipped(bank))
         loosen(border, settings.CONFUSION + gap)
         return border
 
@@ -136,10 +137,10 @@ class Skeleton:
         ends = self.points[[start, end]]
         return (straight_edge(self.vertex(start), self.vertex(end), ends),)
 
-    def _make_bank(self, fan: Fan) -> Border:
-        rail = self._rails[fan.side]
-        start, end = self.corner(fan.side, fan.start), self.corner(fan.side, fan.end)
-        first, last = self._parameters[fan.side][[fan.start, fan.end]].tolist()
+    def _make_bank(self, bank: Bank) -> Border:
+        rail = self._rails[bank.side]
+        start, end = self.corner(bank.side, bank.start), self.corner(bank.side, bank.end)
+        first, last = self._parameters[bank.side][[bank.start, bank.end]].tolist()
         piece = int(rail.piece_at(np.array([(first + last) / 2.0]))[0])
         if rail.pieces[piece].degree == 1 or not self._has_curves:
             return self._line(start, end)

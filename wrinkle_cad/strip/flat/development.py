@@ -73,6 +73,12 @@ class DevelopedRail:
     """(k,) float64, rad: how much of its angle each segment sweeps backwards."""
 
 
+NO_RAIL: Final = DevelopedRail(
+    np.zeros(0, dtype=np.int64), np.zeros(0), np.zeros(0), np.zeros(0), 0.0, np.zeros(0)
+)
+"""What a rail that is a point develops to."""
+
+
 def _derivative_matrix() -> FloatArray:
     """(17, 17): from Chebyshev coefficients to those of the derivative on [-1, 1]."""
     k = np.arange(DEGREE + 1)
@@ -85,14 +91,23 @@ _TO_DERIVATIVE: Final = _derivative_matrix()
 
 
 def develop_rail(
-    cells: Cells, parameters: FloatArray, apexes: FloatArray, tolerance: float
+    cells: Cells,
+    parameters: FloatArray,
+    apexes: FloatArray,
+    planes: FloatArray,
+    tolerance: float,
 ) -> DevelopedRail:
     """Develops the cones between a rail's segments and their apices.
+
+    In a plane nothing has to be unrolled: angles and areas are counted with their sign, so that a
+    curve may turn back as it likes.
 
     Args:
         cells: the rail's curve; every parameter is an edge of a cell.
         parameters: (k + 1,) float64: ends of the segments.
         apexes: (k, 3) float64, mm: apex of the cone over each segment.
+        planes: (k, 3) float64: normal of the plane that a segment lies in with its apex, to where
+            angles about the apex grow; zero for a cone.
         tolerance: mm; points of the result follow the flat curve at least this closely.
 
     Returns:
@@ -102,9 +117,11 @@ def develop_rail(
     relative = cells.coefficients.copy()
     relative[:, 0, :] -= apexes[segment]
     slopes = times_each(_TO_DERIVATIVE, relative)
+    is_plane = np.asarray(planes.any(axis=1), dtype=np.bool_)
     normals = _mean_normals(relative, slopes, segment, len(apexes))
+    normals[is_plane] = planes[is_plane]
     slack = (BULGE_SHARE * tolerance, ROUND_OFF * cells.size)
-    rows, back, area = _integrate(relative, slopes, segment, normals, slack)
+    rows, back, area = _integrate(relative, slopes, segment, normals, is_plane, slack)
     return DevelopedRail(
         rows[:, 0].astype(np.int64), rows[:, 1], rows[:, 2], np.cumsum(rows[:, 3]), area, back
     )
@@ -138,9 +155,17 @@ def _mean_normals(
 
 @compiled
 def _panel(
-    relative: FloatArray, slopes: FloatArray, low: float, high: float, normal: FloatArray
+    relative: FloatArray,
+    slopes: FloatArray,
+    low: float,
+    high: float,
+    normal: FloatArray,
+    is_plane: bool,
 ) -> Panel:
-    """Length, angle, area and backward angle between two places of one cell."""
+    """Length, angle, area and backward angle between two places of one cell.
+
+    In a plane angle and area are counted with their sign, and nothing is backward.
+    """
     length = angle = area = back = 0.0
     half = 0.5 * (high - low)
     for i in range(len(NODES)):
@@ -152,10 +177,13 @@ def _panel(
         speed = np.sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2])
         square = v[0] * v[0] + v[1] * v[1] + v[2] * v[2]
         length += weight * np.sqrt(slope[0] ** 2 + slope[1] ** 2 + slope[2] ** 2)
+        is_back = n[0] * normal[0] + n[1] * normal[1] + n[2] * normal[2] < 0.0
+        if is_plane and is_back:
+            speed, is_back = -speed, False
         area += 0.5 * weight * speed
         if square > 0.0:
             angle += weight * speed / square
-            if n[0] * normal[0] + n[1] * normal[1] + n[2] * normal[2] < 0.0:
+            if is_back:
                 back += weight * speed / square
     return length, angle, area, back
 
@@ -198,6 +226,7 @@ def _integrate(
     slopes: FloatArray,
     segment: IndexArray,
     normals: FloatArray,
+    is_plane: NDArray[np.bool_],
     slack: Pair,
 ) -> tuple[FloatArray, FloatArray, float]:
     """Panels so narrow that length, angle and area have settled and the flat curve is followed.
@@ -218,12 +247,12 @@ def _integrate(
         curve, slope, normal = relative[cell], slopes[cell], normals[k]
         low, top = -1.0, 0
         ends[0], depths[0] = 1.0, 0
-        panels[0] = np.array(_panel(curve, slope, -1.0, 1.0, normal))
+        panels[0] = np.array(_panel(curve, slope, -1.0, 1.0, normal, is_plane[k]))
         while top >= 0:
             high, depth = ends[top], depths[top]
             middle = 0.5 * (low + high)
-            left = _panel(curve, slope, low, middle, normal)
-            right = _panel(curve, slope, middle, high, normal)
+            left = _panel(curve, slope, low, middle, normal, is_plane[k])
+            right = _panel(curve, slope, middle, high, normal, is_plane[k])
             whole = (panels[top, 0], panels[top, 1], panels[top, 2], panels[top, 3])
             radii = (_radius(curve, low), _radius(curve, middle), _radius(curve, high))
             if depth < FIRST_DEPTH or (

@@ -9,15 +9,23 @@ import numpy as np
 from numpy.typing import NDArray
 
 from wrinkle_cad.errors import InputError
-from wrinkle_cad.settings import TURNED_BACK_PER_TOLERANCE, UNROLLING_ACCURACY
-from wrinkle_cad.strip.curve.chebyshev import FloatArray, PointAt, fit_cells
+from wrinkle_cad.settings import PLANE_GAP, TURNED_BACK_PER_TOLERANCE, UNROLLING_ACCURACY
+from wrinkle_cad.strip.curve.chebyshev import Cells, FloatArray, PointAt, fit_cells
 from wrinkle_cad.strip.curve.polyline import arc_lengths
 from wrinkle_cad.strip.curve.sampling import Samples
 from wrinkle_cad.strip.portable import atan2, cos, dot, norm, sin
 from wrinkle_cad.strip.triangulation import P_STEP, Triangulation
 
-from .development import THINNING_SHARE, DevelopedRail, develop_rail, place_chain, thinned
+from .development import (
+    NO_RAIL,
+    THINNING_SHARE,
+    DevelopedRail,
+    develop_rail,
+    place_chain,
+    thinned,
+)
 from .overlap import is_overlapping
+from .planes import planar_runs, plane_normal, spans_of
 
 IndexArray = NDArray[np.int64]
 
@@ -113,9 +121,10 @@ def unroll_cones(
     p[i+1]; a Q-step likewise. Its polar angle is the integral of sqrt(1 - r'(s)^2) / r(s) over the
     curve's arc length s, with r the distance from the apex. Derivatives come from polynomials of
     degree 16 between samples, halved where the curve needs it, so a curve with knots inside a
-    segment (C1 or smoother) is followed as well. Where a segment turns back as seen from its apex
-    the cone is folded by 180 degrees in space; it is unfolded here and counted. An apex may be an
-    end of its segment (rails that meet).
+    segment (C1 or smoother) is followed as well. What lies in one plane (planar_runs) stays as it
+    is. Elsewhere, where a segment turns back as seen from its apex, the cone is folded by 180
+    degrees in space; it is unfolded here and counted. An apex may be an end of its segment (rails
+    that meet). A rail that is a point has one sample and no length.
 
     Args:
         triangulation: the strip, its p and q the points of the samples.
@@ -140,8 +149,10 @@ def unroll_cones(
     _check_samples("Q", q_samples, triangulation.q)
     strip = _Chain(triangulation)
     is_p = strip.is_p
-    flat_p = _developed(p_samples, p_at, strip.apex[is_p], tolerance)
-    flat_q = _developed(q_samples, q_at, strip.apex[~is_p], tolerance)
+    cells = exact_rails((p_at, q_at), (p_samples, q_samples))
+    planes = _planes(triangulation, cells, (p_samples, q_samples))
+    flat_p = _developed(cells[0], p_samples, strip.apex[is_p], planes[is_p], tolerance)
+    flat_q = _developed(cells[1], q_samples, strip.apex[~is_p], -planes[~is_p], tolerance)
     return _cones_in_plane(triangulation.steps, strip, flat_p, flat_q, tolerance)
 
 
@@ -211,17 +222,49 @@ def _check_samples(name: str, samples: Samples, points: FloatArray) -> None:
         )
 
 
+def exact_rails(
+    curves: tuple[PointAt, PointAt], samples: tuple[Samples, Samples]
+) -> tuple[Cells | None, Cells | None]:
+    """Returns both rails as polynomials between their samples; None for one that is a point."""
+    p, q = (
+        None
+        if len(sampled.parameters) == 1
+        else fit_cells(curve, sampled.parameters, math.inf, share_of_extent=UNROLLING_ACCURACY)
+        for curve, sampled in zip(curves, samples, strict=True)
+    )
+    return p, q
+
+
+def _planes(
+    triangulation: Triangulation,
+    cells: tuple[Cells | None, Cells | None],
+    samples: tuple[Samples, Samples],
+) -> FloatArray:
+    """(m+n-2, 3): unit normals of the planes that steps lie in, zero for cones."""
+    parameters = samples[0].parameters, samples[1].parameters
+    runs = planar_runs(triangulation, cells, parameters, PLANE_GAP)
+    planes = np.zeros((len(runs), 3))
+    for first, last in spans_of(runs):
+        planes[first:last] = plane_normal(triangulation, first, last)
+    return planes
+
+
 def _developed(
-    samples: Samples, point_at: PointAt, apexes: FloatArray, tolerance: float
+    cells: Cells | None,
+    samples: Samples,
+    apexes: FloatArray,
+    planes: FloatArray,
+    tolerance: float,
 ) -> DevelopedRail:
-    cells = fit_cells(point_at, samples.parameters, math.inf, share_of_extent=UNROLLING_ACCURACY)
-    return develop_rail(cells, samples.parameters, apexes, tolerance)
+    if cells is None:
+        return NO_RAIL
+    return develop_rail(cells, samples.parameters, apexes, planes, tolerance)
 
 
 def _last_of_segments(flat: DevelopedRail) -> IndexArray:
     """Where the segments end among the points of a developed rail."""
-    ends: IndexArray = np.append(np.flatnonzero(np.diff(flat.segment)), len(flat.segment) - 1)
-    return ends
+    ends = np.flatnonzero(np.diff(flat.segment, append=-1))
+    return ends.astype(np.int64)
 
 
 def _line(
