@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import io
 from itertools import pairwise
 from pathlib import Path
 
 from OCP.BRepBuilderAPI import BRepBuilderAPI_MakeEdge, BRepBuilderAPI_MakeWire
 from OCP.BRepPrimAPI import BRepPrimAPI_MakeBox
+from OCP.BRepTools import BRepTools
 from OCP.gp import gp_Pnt
 from OCP.TopoDS import TopoDS_Edge, TopoDS_Shape
 
@@ -100,3 +102,10 @@ def curves_text(unit: str | None = "mm", *, names: tuple[str, str] = ("", "")) -
         for base, name, length, y in ((20, names[0], 2.0, 0.0), (30, names[1], 3.0, 1.0))
     )
     return HEAD + PRODUCT + units + context + curves + TAIL
+
+
+def brep_bytes(shape: TopoDS_Shape) -> bytes:
+    """The content of a BREP file, the kernel's own text format."""
+    stream = io.BytesIO()
+    BRepTools.Write_s(shape, stream)
+    return stream.getvalue()

@@ -14,9 +14,12 @@ from wrinkle_cad.files.names import (
     apply_mask,
     check_mask,
     collision_key,
+    error_words,
+    one_line,
     printable,
     safe_folder,
     safe_name,
+    split_name,
 )
 
 HOSTILE = (
@@ -117,6 +120,31 @@ def test_a_printable_text_is_one_line_of_real_characters() -> None:
     text = printable("a\nb\udcff\x1b[31m\u202e\u2028靴")
     assert text == "a\\nb\\udcff\\x1b[31m\\u202e\\u2028靴"
     text.encode("utf-8")
+
+
+@pytest.mark.parametrize(
+    ("name", "expected"),
+    [
+        ("a.step", ("a", "step")),
+        ("a.b.STP", ("a.b", "STP")),
+        ("a.stp.gz", ("a", "stp.gz")),
+        (".step", (".step", "")),
+        ("a.dat", ("a.dat", "")),
+        ("a.dat.gz", ("a.dat", "gz")),
+    ],
+)
+def test_a_name_is_split_into_stem_and_suffixes(name: str, expected: tuple[str, str]) -> None:
+    assert split_name(name) == expected
+
+
+def test_a_line_from_a_file_has_blanks_for_what_is_no_text() -> None:
+    assert one_line("a\nb\udcff\x1b[31m\u202e\u2028\ufffe靴") == "a b  [31m   靴"
+    assert one_line("two  words, ça va") == "two  words, ça va"
+
+
+def test_what_an_error_says_is_one_line() -> None:
+    assert error_words(ValueError(" no\n such\tthing ")) == "no such thing"
+    assert error_words(RuntimeError()) == "RuntimeError"
 
 
 def assert_is_safe(name: str) -> None:

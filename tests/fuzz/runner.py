@@ -24,11 +24,12 @@ import psutil
 from tests.fuzz.mutations import mutate
 from wrinkle_cad.batch.folder.conversion import convert
 from wrinkle_cad.batch.folder.events import BatchEvent, FileFinished
-from wrinkle_cad.batch.folder.inputs import CAD_SUFFIXES, find_sources
+from wrinkle_cad.batch.folder.inputs import find_sources
 from wrinkle_cad.batch.folder.manifest import Record
 from wrinkle_cad.batch.folder.plan import plan_batch
 from wrinkle_cad.batch.workers.crew import WorkerCrew
 from wrinkle_cad.batch.workers.ending import CrewLimits
+from wrinkle_cad.files.names import CAD_SUFFIXES
 from wrinkle_cad.files.staging import leftovers
 
 ROOT = Path(__file__).parent.parent.parent

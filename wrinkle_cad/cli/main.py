@@ -14,9 +14,11 @@ import traceback
 from collections.abc import Sequence
 from dataclasses import asdict
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Any, Final, get_args
 
+from wrinkle_cad import settings
 from wrinkle_cad.errors import WrinkleError
+from wrinkle_cad.files.names import error_words
 
 from .batch_arguments import add_batch_arguments
 from .job_arguments import add_job_arguments, job_keywords
@@ -53,10 +55,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 def _report_defect(kind: type[BaseException], error: BaseException, _: object) -> None:
     """One line for what no code foresaw; Python then exits with code 1."""
-    said = " ".join(str(error).split()) or "no message"
     print(
-        f"wrinkle-cad: defect in the program - {kind.__name__}: {said} - run again with --debug"
-        " and report what it prints",
+        f"wrinkle-cad: defect in the program - {kind.__name__}: {error_words(error)} - run again"
+        " with --debug and report what it prints",
         file=sys.stderr,
     )
 
@@ -103,7 +104,7 @@ def _add_inspect(commands: Any) -> None:
     inspect.add_argument("input", type=Path, metavar="INPUT", help="STEP, IGES or BREP file")
     for flag in ("--p", "--q", "--upper"):
         inspect.add_argument(flag, metavar="NAME|INDEX", help="as for run: shows what it takes")
-    inspect.add_argument("--unit", choices=("mm", "cm", "m", "inch", "ft"))
+    inspect.add_argument("--unit", choices=get_args(settings.Unit))
     inspect.add_argument("--json", action="store_true", help="print one JSON value")
     _add_debug(inspect)
 

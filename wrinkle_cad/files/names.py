@@ -1,4 +1,8 @@
-"""Names of outputs that are safe on every system, whatever the input files are called."""
+"""Texts and names from outside: what may stand in a line, in a file, and as a file's name.
+
+One policy for all of them: a character that is no letter, sign or blank (a control, a line end, one
+that turns the reading direction, a byte that is no text) never reaches a screen, a file or a name.
+"""
 
 from __future__ import annotations
 
@@ -10,6 +14,8 @@ from typing import Final
 
 from wrinkle_cad.errors import JobError
 
+CAD_SUFFIXES: Final = (".step", ".stp", ".p21", ".iges", ".igs", ".brep", ".brp")
+"""What CAD files are called; each also with ``.gz`` behind it."""
 NAME_FIELDS: Final = ("stem", "suffix", "folder", "number")
 LONGEST_NAME: Final = 150
 """Bytes of UTF-8: leaves room for suffixes and temporary names below the 255 of file systems."""
@@ -31,7 +37,10 @@ def safe_name(text: str) -> str:
     form). Two different texts can become the same name: who needs them apart compares.
     """
     composed = unicodedata.normalize("NFC", text)
-    name = "".join("_" if _is_unsafe(character) else character for character in composed)
+    name = "".join(
+        "_" if character in _RESERVED_CHARACTERS or is_control(character) else character
+        for character in composed
+    )
     name = name.rstrip(". ").lstrip(" ")
     if name.startswith("."):
         # Hidden names are ours: temporary folders, the lock.
@@ -99,25 +108,73 @@ def collision_key(path: PurePosixPath) -> str:
     return unicodedata.normalize("NFC", path.as_posix()).casefold()
 
 
+def is_control(character: str) -> bool:
+    """Tells whether a character has no place in a line of text.
+
+    Controls and line ends, those that turn the reading direction, lone surrogates (which stand for
+    bytes that are no text), and the non-characters that XML forbids.
+
+    Example:
+        >>> [is_control(character) for character in ("a", " ", chr(10), chr(0x202E))]
+        [False, False, True, True]
+    """
+    return (
+        unicodedata.category(character) in ("Cc", "Cf", "Cs", "Zl", "Zp")
+        or ord(character) & 0xFFFE == 0xFFFE
+    )
+
+
+def one_line(text: str) -> str:
+    """Returns a text from a file, with a blank for every control character.
+
+    Example:
+        >>> one_line("left" + chr(10) + "vamp")
+        'left vamp'
+    """
+    return "".join(" " if is_control(character) else character for character in text)
+
+
 def printable(text: str) -> str:
-    """The text on one line: control characters and bytes that are no text are shown as escapes."""
+    """Returns a file's name for people to read: control characters are shown as escapes.
+
+    Two names that differ stay different.
+
+    Example:
+        >>> len(printable(chr(10))), printable("two words")
+        (2, 'two words')
+    """
     return "".join(
         character.encode("unicode_escape", "backslashreplace").decode("ascii")
-        if unicodedata.category(character) in ("Cc", "Cf", "Cs", "Zl", "Zp")
+        if is_control(character)
         else character
         for character in text
     )
 
 
-def _is_unsafe(character: str) -> bool:
-    # Cc and Cf: controls, among them those that turn the reading direction; Cs: undecodable bytes.
-    return character in _RESERVED_CHARACTERS or unicodedata.category(character) in (
-        "Cc",
-        "Cf",
-        "Cs",
-        "Zl",
-        "Zp",
-    )
+def error_words(error: BaseException) -> str:
+    """Returns what an exception says, on one line; the name of its class where it says nothing.
+
+    Example:
+        >>> error_words(ValueError("no  such" + chr(10) + "thing")), error_words(KeyError())
+        ('no such thing', 'KeyError')
+    """
+    return " ".join(one_line(str(error)).split()) or type(error).__name__
+
+
+def split_name(name: str) -> tuple[str, str]:
+    """Returns the stem of a CAD file's name, and its suffixes without the first dot.
+
+    Example:
+        >>> split_name("vamp.left.STP.gz"), split_name("notes.txt")
+        (('vamp.left', 'STP.gz'), ('notes.txt', ''))
+    """
+    stem, tail = name, ""
+    if stem.lower().endswith(".gz") and len(stem) > len(".gz"):
+        stem, tail = stem[: -len(".gz")], stem[-len(".gz") :]
+    for suffix in CAD_SUFFIXES:
+        if stem.lower().endswith(suffix) and len(stem) > len(suffix):
+            return stem[: -len(suffix)], (stem[-len(suffix) :] + tail).lstrip(".")
+    return stem, tail.lstrip(".")
 
 
 def _shortened(name: str, whole: str) -> str:

@@ -14,6 +14,7 @@ from typing import Any, Final
 
 from wrinkle_cad.cad.upper.options import WaveSettings, check_waves
 from wrinkle_cad.errors import JobError
+from wrinkle_cad.files.names import split_name
 from wrinkle_cad.options.checking import check_known, check_options
 from wrinkle_cad.options.option import option, options_of
 from wrinkle_cad.pattern.piece.options import PieceOptions, check_piece
@@ -21,7 +22,6 @@ from wrinkle_cad.wrinkle.options import StripSettings
 
 from .options import FileSettings, JudgingSettings, ShapeSettings
 
-_SUFFIXES: Final = (".gz", ".step", ".stp", ".p21", ".iges", ".igs", ".brep", ".brp")
 _NAME_LIMIT: Final = 200
 _LATEST_EPOCH: Final = 253_402_300_799
 """The last second of the year 9999; no date format of the outputs can hold a later one."""
@@ -121,11 +121,7 @@ def _check_known(table: Mapping[str, Any], source: str) -> None:
 
 
 def _stem_of(path: Path) -> str:
-    stem = path.name
-    for suffix in _SUFFIXES:
-        if stem.lower().endswith(suffix) and len(stem) > len(suffix):
-            stem = stem[: -len(suffix)]
-    return stem
+    return split_name(path.name)[0]
 
 
 def _check_name(name: str) -> None:

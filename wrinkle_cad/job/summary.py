@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import json
-import math
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from wrinkle_cad.errors import Finding
+from wrinkle_cad.files.json_values import finite
 
 from .job import Job
 from .outputs import SCHEMA, SCHEMA_VERSION
@@ -72,14 +72,4 @@ def settings_as_json(job: Job) -> dict[str, Any]:
 
 def to_json(summary: Mapping[str, Any]) -> str:
     """JSON text of a summary; what is not finite stands as null."""
-    return json.dumps(_plain(summary), ensure_ascii=False, indent=1, allow_nan=False) + "\n"
-
-
-def _plain(value: Any) -> Any:
-    if isinstance(value, float) and not math.isfinite(value):
-        return None
-    if isinstance(value, Mapping):
-        return {str(key): _plain(part) for key, part in value.items()}
-    if isinstance(value, list | tuple):
-        return [_plain(part) for part in value]
-    return value
+    return json.dumps(finite(summary), ensure_ascii=False, indent=1, allow_nan=False) + "\n"

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 from wrinkle_cad import settings
 from wrinkle_cad.errors import Finding, JobError, WrinkleError
+from wrinkle_cad.files.names import error_words
 
 from .job import Job
 from .outcome import JobDone, JobFailed, Progress
@@ -57,7 +58,7 @@ def _one_line_of(error: Exception, job: Job) -> str:
         return f"{job.input.name} - ran out of memory - give a larger --tolerance"
     if isinstance(error, OSError) and not isinstance(error, WrinkleError):
         return f"{job.input.name} - {error.strerror or error} - correct and run again"
-    return " ".join(str(error).split())
+    return error_words(error)
 
 
 def _run(job: Job, clock: PhaseClock) -> JobDone:

@@ -7,10 +7,11 @@ Numbers carry the exact value and the place in the JSON that they come from:
 from __future__ import annotations
 
 import json
-import math
-from collections.abc import Mapping
 from typing import Any, Final
 from xml.etree import ElementTree
+
+from wrinkle_cad.files.json_values import finite
+from wrinkle_cad.files.names import is_control
 
 Element = ElementTree.Element
 Child = Element | str | None
@@ -63,26 +64,10 @@ def to_script(value: Any) -> str:
     return text.replace("<", "\\u003c").replace(">", "\\u003e")
 
 
-def finite(value: Any) -> Any:
-    """Returns the same value with null for every number that is not finite."""
-    if isinstance(value, float) and not math.isfinite(value):
-        return None
-    if isinstance(value, Mapping):
-        return {str(key): finite(part) for key, part in value.items()}
-    if isinstance(value, list | tuple):
-        return [finite(part) for part in value]
-    return value
-
-
 def plain(text: str) -> str:
-    """Returns a text that a page can hold: control characters and lone surrogates replaced."""
+    """Returns a text that a page can hold, lines and all: what is no text is replaced."""
     return "".join(
-        _REPLACEMENT
-        if (ord(letter) < 32 and letter not in "\t\n\r")
-        or 0x7F <= ord(letter) < 0xA0
-        or 0xD800 <= ord(letter) < 0xE000
-        else letter
-        for letter in text
+        _REPLACEMENT if is_control(letter) and letter not in "\t\n\r" else letter for letter in text
     )
 
 

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from wrinkle_cad.batch.folder.inputs import find_sources, split_name
+from wrinkle_cad.batch.folder.inputs import find_sources
 from wrinkle_cad.errors import InputError
 
 
@@ -102,18 +102,3 @@ def test_a_folder_cannot_be_input_and_output(tmp_path: Path) -> None:
     put(tmp_path, "out/a.step")
     with pytest.raises(InputError, match="inputs are never written to"):
         find_sources([str(tmp_path / "out")], tmp_path / "out")
-
-
-@pytest.mark.parametrize(
-    ("name", "expected"),
-    [
-        ("a.step", ("a", "step")),
-        ("a.b.STP", ("a.b", "STP")),
-        ("a.stp.gz", ("a", "stp.gz")),
-        (".step", (".step", "")),
-        ("a.dat", ("a.dat", "")),
-        ("a.dat.gz", ("a.dat", "gz")),
-    ],
-)
-def test_a_name_is_split_into_stem_and_suffixes(name: str, expected: tuple[str, str]) -> None:
-    assert split_name(name) == expected

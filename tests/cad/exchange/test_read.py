@@ -13,11 +13,22 @@ from OCP.gp import gp_Trsf, gp_Vec
 from OCP.IGESControl import IGESControl_Writer
 from OCP.TopLoc import TopLoc_Location
 
-from tests.cad.makers import HEAD, PRODUCT, TAIL, UNITS, arc, box, curves_text, line, polyline
+from tests.cad.makers import (
+    HEAD,
+    PRODUCT,
+    TAIL,
+    UNITS,
+    arc,
+    box,
+    brep_bytes,
+    curves_text,
+    line,
+    polyline,
+)
 from tests.cad.measuring import bounding_box
 from wrinkle_cad.cad.exchange.read import read_cad
 from wrinkle_cad.cad.exchange.shapes import CadFile, Part
-from wrinkle_cad.cad.exchange.write import brep_bytes, write_step
+from wrinkle_cad.cad.exchange.write import write_step
 from wrinkle_cad.cad.kernel.topology import (
     faces_of,
     make_compound,

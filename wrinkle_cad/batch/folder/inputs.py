@@ -7,12 +7,9 @@ import os
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path, PurePosixPath
-from typing import Final
 
 from wrinkle_cad.errors import InputError
-from wrinkle_cad.files.names import printable
-
-CAD_SUFFIXES: Final = (".step", ".stp", ".p21", ".iges", ".igs", ".brep", ".brp")
+from wrinkle_cad.files.names import CAD_SUFFIXES, printable, split_name
 
 
 @dataclass(frozen=True, slots=True)
@@ -66,17 +63,6 @@ def find_sources(arguments: Sequence[str], output_dir: Path) -> Sources:
     sources = [_source(path, base) for path in found.values()]
     sources.sort(key=lambda source: (source.folder.parts, os.fsencode(source.path.name)))
     return Sources(tuple(sources), tuple(notes))
-
-
-def split_name(name: str) -> tuple[str, str]:
-    """Splits the name of a CAD file into its stem and its suffixes without the first dot."""
-    stem, tail = name, ""
-    if stem.lower().endswith(".gz") and len(stem) > len(".gz"):
-        stem, tail = stem[: -len(".gz")], stem[-len(".gz") :]
-    for suffix in CAD_SUFFIXES:
-        if stem.lower().endswith(suffix) and len(stem) > len(suffix):
-            return stem[: -len(suffix)], (stem[-len(suffix) :] + tail).lstrip(".")
-    return stem, tail.lstrip(".")
 
 
 def _expand(argument: str, output_dir: Path, notes: list[str]) -> tuple[Path, Iterable[Path]]:

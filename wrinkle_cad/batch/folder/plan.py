@@ -10,10 +10,17 @@ from typing import Any, Final, NamedTuple
 
 from wrinkle_cad import settings
 from wrinkle_cad.errors import JobError
-from wrinkle_cad.files.names import apply_mask, check_mask, collision_key, safe_folder, safe_name
+from wrinkle_cad.files.names import (
+    apply_mask,
+    check_mask,
+    collision_key,
+    safe_folder,
+    safe_name,
+    split_name,
+)
 from wrinkle_cad.job.job import Job, make_job, read_job_toml
 
-from .inputs import Source, split_name
+from .inputs import Source
 
 FOLDER_TOML: Final = "job.toml"
 FILE_TOML: Final = ".job.toml"

@@ -12,6 +12,7 @@ from OCP.BRepTools import BRepTools
 from OCP.TopoDS import TopoDS_Shape
 
 from wrinkle_cad.cad.kernel.steps import KERNEL_ERRORS
+from wrinkle_cad.files.names import error_words
 
 from .collect import listed, take_apart
 from .shapes import CadFile
@@ -63,8 +64,7 @@ def _shape(source: Source, *, is_binary: bool) -> TopoDS_Shape:
         else:
             BRepTools.Read_s(shape, io.BytesIO(content.replace(b"\r", b"\n")), BRep_Builder())
     except KERNEL_ERRORS as error:
-        words = " ".join(str(error).split()) or type(error).__name__
-        raise source.fail(f"damaged: the CAD kernel fails on it ({words})") from error
+        raise source.fail(f"damaged: the CAD kernel fails on it ({error_words(error)})") from error
     if shape.IsNull():
         raise source.fail("damaged: not readable as BREP although its frame is whole")
     return shape

@@ -13,6 +13,7 @@ from OCP.IGESCAFControl import IGESCAFControl_Reader
 
 from wrinkle_cad.cad.exchange.step.text import plain_text
 from wrinkle_cad.cad.kernel.steps import KERNEL_ERRORS
+from wrinkle_cad.files.names import error_words
 
 from .collect import listed, take_apart
 from .shapes import CadFile
@@ -122,5 +123,4 @@ def _leaves(source: Source, text: bytes) -> list[Leaf]:
             raise source.fail("damaged: not readable as IGES although its records are whole")
         return leaves_of(document) if is_whole else []
     except KERNEL_ERRORS as error:
-        words = " ".join(str(error).split()) or type(error).__name__
-        raise source.fail(f"damaged: the CAD kernel fails on it ({words})") from error
+        raise source.fail(f"damaged: the CAD kernel fails on it ({error_words(error)})") from error

@@ -19,6 +19,7 @@ from wrinkle_cad.cad.exchange.step.text import check_step, length_units, plain_t
 from wrinkle_cad.cad.kernel.shape_index import ShapeIndex
 from wrinkle_cad.cad.kernel.steps import KERNEL_ERRORS
 from wrinkle_cad.cad.kernel.topology import as_edge, edges_of, faces_of, kind_name
+from wrinkle_cad.files.names import error_words
 
 from .collect import Found, listed, take_apart
 from .loose_edges import chain_edges
@@ -74,8 +75,7 @@ def _leaves(source: Source, text: bytes) -> list[Leaf]:
                 return []
         return leaves_of(document)
     except KERNEL_ERRORS as error:
-        words = " ".join(str(error).split()) or type(error).__name__
-        raise source.fail(f"damaged: the CAD kernel fails on it ({words})") from error
+        raise source.fail(f"damaged: the CAD kernel fails on it ({error_words(error)})") from error
 
 
 def _found(leaves: list[Leaf], text: bytes) -> list[Found]:

@@ -8,7 +8,13 @@ from wrinkle_cad import settings
 
 from .sniff import Source
 
-MM_PER_UNIT: Final = {"mm": 1.0, "cm": 10.0, "m": 1000.0, "inch": 25.4, "ft": 304.8}
+MM_PER_UNIT: Final[dict[str, float]] = {
+    "mm": 1.0,
+    "cm": 10.0,
+    "m": 1000.0,
+    "inch": 25.4,
+    "ft": 304.8,
+}
 
 
 def check_unit(source: Source, declared: tuple[str, ...], unit: str | None) -> float:

@@ -14,7 +14,6 @@ from pathlib import Path
 from typing import Final
 
 from OCP.BRepBuilderAPI import BRepBuilderAPI_Copy, BRepBuilderAPI_Transform
-from OCP.BRepTools import BRepTools
 from OCP.IFSelect import IFSelect_RetDone
 from OCP.STEPCAFControl import STEPCAFControl_Writer
 from OCP.STEPControl import STEPControl_AsIs
@@ -33,10 +32,11 @@ from wrinkle_cad.cad.kernel.topology import faces_of
 from wrinkle_cad.cad.kernel.versions import ShapeMap
 from wrinkle_cad.errors import CadError, ExportError
 from wrinkle_cad.files.atomic import write_atomically
+from wrinkle_cad.files.names import one_line
 
 from .face_styles import carried_over, styles_in
 from .shapes import Part
-from .xde import kernel_parameters, new_document, printable, set_name, silence_kernel
+from .xde import kernel_parameters, new_document, set_name, silence_kernel
 
 _SCHEMAS: Final = {"AP214": "AP214IS", "AP242": "AP242DIS"}
 _PARAMETERS: Final[dict[str, str | int]] = {
@@ -55,8 +55,6 @@ def write_step(
     *,
     schema: str = settings.STEP_SCHEMA,
     timestamp: datetime | None = None,
-    author: str = "",
-    organization: str = "",
 ) -> None:
     """Writes named and colored shapes into one STEP file, in mm.
 
@@ -66,14 +64,12 @@ def write_step(
         schema: ``AP214`` or ``AP242``.
         timestamp: the time in the header; the start of 1970 when None, so that equal input gives
             equal bytes.
-        author: for the header.
-        organization: for the header.
 
     Raises:
         ExportError: the kernel cannot write a shape, or the file cannot be written; what stood
             there before is untouched.
     """
-    header = Header(path.name, timestamp, author, organization)
+    header = Header(path.name, timestamp)
     try:
         content = step_bytes(parts, header, schema=schema)
         write_atomically(path, content)
@@ -114,7 +110,7 @@ def _with_faces_in_order(part: Part) -> Part:
     Raises:
         CadError: it is empty, it is a single face and has a face, or does not hold one.
     """
-    name = printable(part.name)
+    name = one_line(part.name)
     if part.shape.IsNull():
         raise CadError("write STEP", f"part '{name}' is empty - leave it out")
     if not part.faces:
@@ -225,14 +221,6 @@ def stl_bytes(
     if not len(triangles):
         raise CadError("mesh the shape", "the CAD kernel made no triangles - check the shape")
     return binary_stl(points, triangles)
-
-
-def brep_bytes(shape: TopoDS_Shape) -> bytes:
-    """Returns the content of a BREP file, the kernel's own text format, without triangles."""
-    stream = io.BytesIO()
-    with kernel_step("write BREP"):
-        BRepTools.Write_s(shape, stream)
-    return stream.getvalue()
 
 
 def _disk_error(path: Path, form: str, error: OSError) -> ExportError:

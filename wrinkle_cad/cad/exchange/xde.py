@@ -8,7 +8,6 @@ more; a leaf without a name takes that of its nearest named ancestor.
 from __future__ import annotations
 
 import re
-import unicodedata
 from collections import Counter
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
@@ -36,6 +35,7 @@ from OCP.XCAFDoc import (
 
 from wrinkle_cad.cad.kernel.topology import as_face, faces_of
 from wrinkle_cad.cad.kernel.versions import LabelList
+from wrinkle_cad.files.names import one_line
 
 from .shapes import FaceStyle, has_role
 
@@ -202,16 +202,8 @@ def _name(label: TDF_Label) -> str:
 
 def proper_name(raw: str) -> str:
     """Returns a name as a person gave it: empty if a program did, repaired, without line ends."""
-    name = printable(_decoded_twice(raw)).strip()
+    name = one_line(_decoded_twice(raw)).strip()
     return "" if _AUTOMATIC.fullmatch(name) else name
-
-
-def printable(name: str) -> str:
-    """Returns the name with blanks for control characters, line ends and lone surrogates."""
-    return "".join(
-        " " if unicodedata.category(letter) in ("Cc", "Cs", "Zl", "Zp") else letter
-        for letter in name
-    )
 
 
 def _decoded_twice(name: str) -> str:

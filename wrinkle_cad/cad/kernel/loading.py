@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 
 from wrinkle_cad.errors import CadError
+from wrinkle_cad.files.names import error_words
 
 
 @contextmanager
@@ -22,8 +23,9 @@ def kernel_importable() -> Iterator[None]:
     try:
         yield
     except ImportError as error:
-        said = " ".join(str(error).split())
-        raise CadError("load the CAD kernel", f"{said} - run wrinkle-cad doctor") from error
+        raise CadError(
+            "load the CAD kernel", f"{error_words(error)}. Run wrinkle-cad doctor."
+        ) from error
     finally:
         if was_on:
             gc.enable()

@@ -8,6 +8,7 @@ from contextlib import contextmanager
 from OCP import Geom, Standard, StdFail, TopoDS, gp
 
 from wrinkle_cad.errors import CadError
+from wrinkle_cad.files.names import error_words
 
 # The bindings register each class on its own: they share no base but Exception.
 KERNEL_ERRORS: tuple[type[Exception], ...] = (
@@ -27,6 +28,5 @@ def kernel_step(step: str) -> Iterator[None]:
     try:
         yield
     except KERNEL_ERRORS as error:
-        message = " ".join(str(error).split()) or type(error).__name__
-        found = f"the CAD kernel failed ({message}). Check the input shape."
+        found = f"the CAD kernel failed ({error_words(error)}). Check the input shape."
         raise CadError(step, found) from error

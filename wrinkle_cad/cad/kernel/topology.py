@@ -134,11 +134,11 @@ def free_edges(shape: TopoDS_Shape) -> list[TopoDS_Edge]:
     return [edge for edge in once if not BRep_Tool.Degenerated_s(edge)]
 
 
-def make_vertex(point: ArrayLike, tolerance: float = settings.CONFUSION) -> TopoDS_Vertex:
+def make_vertex(point: ArrayLike) -> TopoDS_Vertex:
     """Returns a vertex at (3,) mm."""
     x, y, z = (float(value) for value in np.asarray(point, dtype=np.float64))
     vertex = TopoDS_Vertex()
-    BRep_Builder().MakeVertex(vertex, gp_Pnt(x, y, z), tolerance)
+    BRep_Builder().MakeVertex(vertex, gp_Pnt(x, y, z), settings.CONFUSION)
     return vertex
 
 

@@ -6,7 +6,6 @@ escaped. y runs down in SVG, so the drawing is turned over once, here, and nowhe
 
 from __future__ import annotations
 
-import re
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Final
@@ -18,6 +17,7 @@ from ezdxf.colors import aci2rgb
 from wrinkle_cad import settings
 from wrinkle_cad.errors import ExportError, Finding, InputError
 from wrinkle_cad.files.atomic import write_atomically
+from wrinkle_cad.files.names import one_line
 from wrinkle_cad.pattern.piece.piece import Floats, PatternPiece
 from wrinkle_cad.pattern.piece.stacking import laid_out
 
@@ -29,7 +29,6 @@ _MARGIN: Final = 10.0
 """mm around everything."""
 _BAR: Final = settings.TEST_SQUARE
 _LINE_WIDTH: Final = 0.25
-_NOT_XML: Final = re.compile("[^\t\n\r\u0020-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
 
 
 def svg_bytes(
@@ -168,5 +167,5 @@ def _escaped(text: str) -> str:
 
 
 def _plain(text: str) -> str:
-    """Returns a text on one line, without what XML does not allow even escaped."""
-    return " ".join(_NOT_XML.sub(" ", text).split())
+    """Returns a text on one line; what is left of it XML allows."""
+    return " ".join(one_line(text).split())

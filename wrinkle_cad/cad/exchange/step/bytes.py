@@ -14,8 +14,8 @@ from datetime import UTC, datetime
 from typing import Final
 
 from wrinkle_cad.cad.exchange.shapes import Part
-from wrinkle_cad.cad.exchange.xde import printable
 from wrinkle_cad.errors import CadError
+from wrinkle_cad.files.names import one_line
 
 from .colors import Colored, color_lines, holders
 
@@ -44,10 +44,6 @@ class Header:
     """The file's own name."""
     timestamp: datetime | None = None
     """When it was written; the start of 1970 when None."""
-    author: str = ""
-    """Who wrote it."""
-    organization: str = ""
-    """For whom."""
 
 
 def placeholder(i: int) -> str:
@@ -62,7 +58,7 @@ def face_placeholder(i: int, k: int) -> str:
 
 def encoded(text: str) -> bytes:
     """Returns a text as a STEP string with its quotes: ASCII only, whatever the text holds."""
-    shown = printable(text)[:_STRING_LIMIT]
+    shown = one_line(text)[:_STRING_LIMIT]
     pieces = [b"'"]
     for run in re.findall(r"[ -~]+|[^ -~]+", shown):
         if run.isascii():
@@ -113,8 +109,8 @@ def _header(header: Header, schema: bytes) -> bytes:
         [
             encoded(header.file_name),
             encoded(when),
-            b"(" + encoded(header.author) + b")",
-            b"(" + encoded(header.organization) + b")",
+            b"('')",
+            b"('')",
             b"'Open CASCADE'",
             b"'wrinkle-cad'",
             b"''",
@@ -136,7 +132,7 @@ def _styles(data: bytes, parts: Sequence[Part]) -> bytes:
     items = _items_of_parts(data)
     missing = [i for i in range(len(parts)) if i not in items]
     if missing:
-        name = printable(parts[missing[0]].name)
+        name = one_line(parts[missing[0]].name)
         raise CadError("write STEP", f"the CAD kernel left out part '{name}' - check its shape")
     faces = _numbers_of_faces(data, parts)
     holder_of = holders(data) if faces else {}
@@ -159,7 +155,7 @@ def _numbers_of_faces(data: bytes, parts: Sequence[Part]) -> dict[tuple[int, int
     for i, part in enumerate(parts):
         missing = sum((i, k) not in found for k in range(len(part.faces)))
         if missing:
-            name = printable(part.name)
+            name = one_line(part.name)
             raise CadError(
                 "write STEP",
                 f"the CAD kernel left out {missing} of {len(part.faces)} named or colored faces of"
