@@ -3,18 +3,21 @@
 from __future__ import annotations
 
 import numpy as np
+import shapely
 
 from wrinkle_cad.errors import InputError
-from wrinkle_cad.strip.flat.overlap import covers_twice
 
 from .flat import FlatStrip
 from .outline import sew_outline
 
 
 def overlaps(strip: FlatStrip, tolerance: float) -> bool:
-    """Returns whether the piece of the flat strip, as it will be sewn, covers any place twice."""
+    """Returns whether the flat strip covers any part of the plane twice.
+
+    A strip is a disc; laid flat it covers nothing twice exactly when its outline is simple.
+    """
     outline = sew_outline(strip.p_line, strip.q_line, tolerance=tolerance)
-    return covers_twice(outline.points)
+    return not shapely.Polygon(outline.points).is_valid
 
 
 def non_overlapping_runs(strip: FlatStrip, *, tolerance: float) -> tuple[tuple[int, int], ...]:

@@ -1,0 +1,140 @@
+"""From the bridges of a triangulation to the pairing of least twist near them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+import numpy.typing as npt
+
+from .nodes import Nodes, place_nodes
+from .pairing import corridor, pair_nodes
+from .rail_curve import RailCurve
+from .vectors import lengths
+
+Floats = npt.NDArray[np.float64]
+Ints = npt.NDArray[np.int64]
+Bytes = npt.NDArray[np.int8]
+
+NODES: Final = 256
+"""A strip's first grid has so many nodes on a rail of mean length ..."""
+NODES_ACROSS: Final = 8
+"""... or so many in a stretch as long as its median ruling, if that is more ..."""
+MOST_NODES: Final = 2048
+"""... but no more than this."""
+FINER: Final = 4
+"""Each grid is so many times finer than the one before."""
+REACH_PER_BRIDGE: Final = 1.0
+"""Rulings are sought so far beside the bridges, in shares of a bridge's length: then 40 random
+strips had one surface each, whatever the tolerance and the objective (0.25: 38 of them) ..."""
+REACH_PER_EDGE: Final = 1.5
+"""... or so many bank edges beside them, if that is more."""
+REACH_IN_NODES: Final = 4
+"""On a finer grid: so many nodes of the coarser one beside the pairing found on that."""
+
+BENDING: Final = 0.005
+"""Weight, on the first grid, of the squared turn of the sheet over a stretch as long as the ruling:
+of pairings without twist the one that bends less is taken, and torsal pieces before fans."""
+BENDING_FINER: Final = FINER * FINER
+"""On a finer grid it weighs so many times less, as the twist that the grid itself makes."""
+MOST_ROUNDS: Final = 64
+"""Often enough for a pairing to settle; three or four rounds are usual."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Pairing:
+    """A pairing of the nodes of two rails."""
+
+    p: Nodes
+    """Nodes of P."""
+    q: Nodes
+    """Nodes of Q."""
+    pairs: Ints
+    """(k, 2) int64; numbers of nodes, from the rails' starts to their ends."""
+    ways: Bytes
+    """(k - 1,) int8; RULED, FAN_P or FAN_Q, for each step from pair to pair."""
+    spacing: float
+    """mm between nodes."""
+    bending: float
+    """The weight of bending with which it was found."""
+
+
+def first_spacing(p: RailCurve, q: RailCurve, bridges: tuple[Floats, Floats]) -> float:
+    """Returns mm between the nodes of the first grid.
+
+    Args:
+        p: the curve.
+        q: the curve.
+        bridges: (k,) float64 each; parameters on P and Q of the bridges.
+    """
+    mean = (p.length + q.length) / 2.0
+    width = float(np.median(lengths(q.point_at(bridges[1]) - p.point_at(bridges[0]))))
+    fine = width / NODES_ACROSS if width > 0.0 else mean
+    return max(min(mean / NODES, fine), mean / MOST_NODES)
+
+
+def pairing_near(
+    p: RailCurve, q: RailCurve, bridges: tuple[Floats, Floats], spacing: float
+) -> Pairing:
+    """Returns the pairing of least twist near the bridges of a triangulation.
+
+    It is sought in a corridor around the bridges, and then around what was found until that stays
+    what it is: the bridges decide where it is sought, not what is found.
+
+    Args:
+        p: the curve.
+        q: the curve.
+        bridges: (k,) float64 each; parameters on P and Q of the bridges, in order.
+        spacing: mm between nodes.
+    """
+    arcs = (p.arc_at(bridges[0]), q.arc_at(bridges[1]))
+    reach = REACH_PER_BRIDGE * lengths(q.point_at(bridges[1]) - p.point_at(bridges[0]))
+    for arc in arcs:
+        edge = np.diff(arc)
+        edge = np.maximum(np.concatenate(([0.0], edge)), np.concatenate((edge, [0.0])))
+        reach = np.maximum(reach, REACH_PER_EDGE * edge)
+    nodes = (place_nodes(p, spacing), place_nodes(q, spacing))
+    found = _paired(nodes, arcs, reach, spacing, BENDING)
+    for _ in range(MOST_ROUNDS):
+        last = found
+        arcs = _arcs(last)
+        ruling = last.q.point[last.pairs[:, 1]] - last.p.point[last.pairs[:, 0]]
+        found = _paired(nodes, arcs, REACH_PER_BRIDGE * lengths(ruling), spacing, BENDING)
+        if np.array_equal(last.pairs, found.pairs):
+            break
+    return found
+
+
+def finer_pairing(p: RailCurve, q: RailCurve, coarse: Pairing) -> Pairing:
+    """Returns the pairing of least twist near another one, on a grid that is FINER times finer.
+
+    Args:
+        p: the curve.
+        q: the curve.
+        coarse: the other one.
+    """
+    spacing = coarse.spacing / FINER
+    arcs = _arcs(coarse)
+    reach = np.full(len(arcs[0]), REACH_IN_NODES * coarse.spacing)
+    nodes = (place_nodes(p, spacing), place_nodes(q, spacing))
+    return _paired(nodes, arcs, reach, spacing, coarse.bending / BENDING_FINER)
+
+
+def _arcs(pairing: Pairing) -> tuple[Floats, Floats]:
+    return pairing.p.arc[pairing.pairs[:, 0]], pairing.q.arc[pairing.pairs[:, 1]]
+
+
+def _paired(
+    nodes: tuple[Nodes, Nodes],
+    arcs: tuple[Floats, Floats],
+    reach: Floats,
+    spacing: float,
+    bending: float,
+) -> Pairing:
+    p, q = nodes
+    low, high = corridor(p.arc, q.arc, *arcs, np.maximum(reach, REACH_IN_NODES * spacing))
+    pairs, ways = pair_nodes(
+        p.point, q.point, p.tangent, q.tangent, p.arc, q.arc, low, high, bending
+    )
+    return Pairing(p, q, pairs, ways, spacing, bending)

@@ -1,0 +1,110 @@
+"""The exact surface of a strip, from its curves: its pieces, and what they ask of a sheet."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+import numpy.typing as npt
+
+from .bending import radius_along
+from .chains import with_exact_fans
+from .creases import Crease, creases_of
+from .least_twist import Pairing, finer_pairing, first_spacing, pairing_near
+from .pieces import Piece, developable_share, pieces_of
+from .rail_curve import RailCurve
+from .sheet import Sheet, sheet_of
+from .stations import slid, stations_of
+from .strain import Strain, strain_of
+
+Floats = npt.NDArray[np.float64]
+
+MOST_FINER: Final = 2
+"""A grid is made finer at most so often ..."""
+STABLE_SHARE: Final = 0.005
+"""... and until the largest strain changes by no more than this share of it ..."""
+STABLE_STRAIN: Final = 1e-5
+"""... or by no more than this."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class RuledStrip:
+    """The surface between two curves near a triangulation, as exact rulings in ordered pieces."""
+
+    sheet: Sheet
+    """Rulings and tangent planes."""
+    pieces: tuple[Piece, ...]
+    """Torsal pieces, cones, planes and gaps, in order along the strip."""
+    creases: tuple[Crease, ...]
+    """Where the tangent plane jumps, in order along the strip."""
+    strain: Strain
+    """What a flat sheet must give."""
+    radius: Floats
+    """(k - 1,) float64, mm; smallest bend radius in each interval between rulings; inf if flat."""
+
+    @property
+    def developable_share(self) -> float:
+        """Share, 0 to 1, of both rails' length that pieces other than gaps cover."""
+        return developable_share(self.sheet)
+
+    @property
+    def largest_twist(self) -> float:
+        """rad, not negative; the largest turn of the tangent plane along a ruling."""
+        return float(np.abs(self.sheet.twist).max(initial=0.0))
+
+    @property
+    def largest_crease(self) -> float:
+        """rad; the angle of the sharpest crease, 0 without any."""
+        return max((crease.angle for crease in self.creases), default=0.0)
+
+    def smallest_bend_radius(self, least_crease: float) -> float:
+        """Returns mm: the radius at the sharpest place; 0 at a crease, inf for a flat strip.
+
+        Args:
+            least_crease: rad; creases below it do not count.
+        """
+        if self.largest_crease >= least_crease:
+            return 0.0
+        return float(self.radius.min(initial=math.inf))
+
+
+def rule_strip(p: RailCurve, q: RailCurve, bridges: tuple[Floats, Floats]) -> RuledStrip:
+    """Returns the surface between two curves that is nearest to developable near a triangulation.
+
+    Args:
+        p: the curve P.
+        q: the curve Q, run the same way.
+        bridges: (k,) float64 each; parameters on P and Q of the triangulation's bridges, in order.
+    """
+    pairing = pairing_near(p, q, bridges, first_spacing(p, q, bridges))
+    strain = strain_of(_exact(p, q, pairing)).largest
+    for _ in range(MOST_FINER):
+        pairing = finer_pairing(p, q, pairing)
+        sheet = _exact(p, q, pairing)
+        before, strain = strain, strain_of(sheet).largest
+        if abs(strain - before) <= max(STABLE_STRAIN, STABLE_SHARE * strain):
+            break
+    creases = creases_of(sheet, p, q, pairing.spacing)
+    pieces = pieces_of(sheet, np.array([crease.ruling for crease in creases], dtype=np.int64))
+    return RuledStrip(sheet, pieces, creases, strain_of(sheet), radius_along(sheet, pieces))
+
+
+def _exact(p: RailCurve, q: RailCurve, pairing: Pairing) -> Sheet:
+    rulings = with_exact_fans(pairing.p, pairing.q, stations_of(pairing), pairing.spacing)
+    return sheet_of(p, q, slid(p, q, rulings, pairing.spacing))
+
+
+def inner_bend_radius(radius: float, thickness: float, k_factor: float) -> float:
+    """Returns mm: the radius at the inner face of a bent sheet whose neutral layer has `radius`.
+
+    Args:
+        radius: mm; of the surface, on which lengths are kept.
+        thickness: mm; of the material.
+        k_factor: where the neutral layer lies, in shares of the thickness from the inner face.
+
+    >>> inner_bend_radius(3.0, 1.2, 0.5)
+    2.4
+    """
+    return max(0.0, radius - k_factor * thickness)
