@@ -46,6 +46,10 @@ COINCIDENT_SAGITTAS: Final = 0.3
 """Samples this many typical sagittas of the other rail away from it may be of the same curve: a
 chord tolerance is a quarter of a sagitta."""
 
+CROSSING_PER_SIZE: Final = 4e-3
+"""A strip passes through itself along more than a typical sagitta, or than this share of its size:
+rails of points may have any sagitta."""
+
 TWIST_PER_DEFECT: Final = 0.5
 """A gap is twist, not the end of a fan, if the surface turns by more than this share of the angle
 between the rails' tangents."""

@@ -5,12 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from wrinkle_cad import settings
-from wrinkle_cad.cad.rail.directrix import (
-    check_distinct,
-    make_directrix,
-    orient_alike,
-    sample_directrix,
-)
+from wrinkle_cad.cad.rail.directrix import check_distinct, make_directrix, orient_alike
+from wrinkle_cad.cad.rail.joint_samples import sample_rails
 from wrinkle_cad.errors import Finding
 from wrinkle_cad.strip.triangulation import triangulate
 
@@ -21,7 +17,9 @@ class WrinkleStrip(TriangulatedStrip):
     """The most developable strip between two directrices.
 
     Sampling and search run at once, so a curve that cannot be used raises here; surfaces and the
-    unrolling are made when first asked for. A strip does not change after it was made.
+    unrolling are made when first asked for. A strip does not change after it was made. The rails
+    are sampled with regard to each other: the strip is the same with P and Q swapped, or both
+    drawn the other way.
 
     Args:
         p: directrix P: a build123d Edge, Wire, ShapeList or list of edges, the same from CadQuery
@@ -62,8 +60,7 @@ class WrinkleStrip(TriangulatedStrip):
         given_p, given_q = make_directrix(p, name="P"), make_directrix(q, name="Q")
         check_distinct(given_p, given_q)
         p_rail, q_rail, was_turned = orient_alike(given_p, given_q)
-        p_samples = sample_directrix(p_rail, tolerance, max_chord)
-        q_samples = sample_directrix(q_rail, tolerance, max_chord)
+        p_samples, q_samples = sample_rails(p_rail, q_rail, tolerance, max_chord)
         triangulation = triangulate(
             p_samples.points,
             q_samples.points,

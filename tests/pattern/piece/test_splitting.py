@@ -119,3 +119,12 @@ def test_a_thick_material_is_split_as_well(ramp):
     settings = PieceSettings(thickness=2.0, surface_side="inside")
     for piece in make_pieces(*ramp, name="ramp", settings=settings):
         assert shapely.Polygon(piece.cut_line).is_valid
+
+
+def test_a_ring_whose_ends_touch_is_whole_as_the_strip_says():
+    angle = np.linspace(0.0, 2.0 * np.pi, 73)
+    ring = np.column_stack((np.cos(angle), np.sin(angle), 0.0 * angle))
+    unrolling, triangulation = strips.unrolled(35.0 * ring, 25.0 * ring)
+    (piece,) = make_pieces(unrolling, triangulation, name="ring", settings=PieceSettings())
+    assert not unrolling.overlaps
+    assert shapely.Polygon(piece.sew_line).area == pytest.approx(unrolling.area, rel=1e-9)

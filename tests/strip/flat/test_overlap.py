@@ -35,7 +35,7 @@ def curling(seed: int) -> Triangulation:
     return triangulate(p, q, criteria=("length",))
 
 
-SEEDS = range(200)
+SEEDS = range(20)
 
 
 @pytest.mark.parametrize("seed", SEEDS)
@@ -46,9 +46,15 @@ def test_overlaps_of_random_strips_are_those_of_their_triangles(seed: int) -> No
     assert flat.overlaps == (covered_twice(corners) > 1e-8 * triangulation.area)
 
 
+@pytest.mark.slow
+@pytest.mark.parametrize("seed", range(20, 200))
+def test_overlaps_of_more_random_strips_are_those_of_their_triangles(seed: int) -> None:
+    test_overlaps_of_random_strips_are_those_of_their_triangles(seed)
+
+
 def test_both_answers_are_frequent_among_random_strips() -> None:
     count = sum(unroll(curling(seed)).overlaps for seed in SEEDS)
-    assert 30 < count < 170
+    assert 3 <= count <= 17
 
 
 def test_a_rectangle_does_not_overlap_and_a_bow_tie_does() -> None:
@@ -68,6 +74,13 @@ def test_edges_that_touch_do_not_overlap() -> None:
         assert not is_overlapping(np.array([*outer, outer_end]), np.array(inner))
 
 
+def test_a_ring_that_lies_on_itself_edge_upon_edge_overlaps() -> None:
+    """One and a quarter turns: no two edges cross, those of the second turn lie on the first."""
+    unit = np.array([(np.cos(k % 72 * np.pi / 36), np.sin(k % 72 * np.pi / 36)) for k in range(91)])
+    assert is_overlapping(35 * unit, 25 * unit)
+    assert not is_overlapping(35 * unit[:73], 25 * unit[:73])
+
+
 def test_touching_is_judged_by_the_size_of_the_strip() -> None:
     angle = np.linspace(0, 2 * np.pi, 200)
     unit = np.stack((np.cos(angle), np.sin(angle)), axis=1)
@@ -77,8 +90,8 @@ def test_touching_is_judged_by_the_size_of_the_strip() -> None:
         assert is_overlapping(35 * size * turned, 25 * size * turned)
 
 
-def test_a_long_outline_is_judged_by_sweeping() -> None:
-    t = np.linspace(0, 400, 60_000)
+def test_a_long_outline_is_judged_in_reasonable_time() -> None:
+    t = np.linspace(0, 400, 20_000)
     low = np.stack((t, np.sin(t)), axis=1)
     high = np.stack((t, np.sin(t) + 5), axis=1)
     assert not is_overlapping(low, high)

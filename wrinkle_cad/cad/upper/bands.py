@@ -20,6 +20,7 @@ from wrinkle_cad import settings
 from wrinkle_cad.cad.faces.shell import build_shell
 from wrinkle_cad.cad.kernel.curves import edge_ends
 from wrinkle_cad.cad.rail.directrix import Directrix, make_directrix, sample_directrix
+from wrinkle_cad.cad.rail.joint_samples import samples_against
 from wrinkle_cad.errors import InputError
 from wrinkle_cad.strip.curve.nearest import nearest_on_polyline
 from wrinkle_cad.strip.curve.polyline import segment_lengths
@@ -111,7 +112,9 @@ def make_band(
     if width <= settings.SEWN_DIRECTLY:
         return None
     _check_open(profile, side, width, name)
-    side_samples = sample_directrix(side, tolerance)
+    # The profile's samples are the wrinkle's too: only the side is sampled with regard to them.
+    alone = sample_directrix(side, tolerance)
+    side_samples = samples_against(side, alone, samples.points, tolerance)
     rails = (profile, side) if i else (side, profile)
     sampled = (samples, side_samples) if i else (side_samples, samples)
     triangulation = _triangulated(*sampled, settings.planarity_from(tolerance))

@@ -3,21 +3,18 @@
 from __future__ import annotations
 
 import numpy as np
-import shapely
 
 from wrinkle_cad.errors import InputError
+from wrinkle_cad.strip.flat.overlap import covers_twice
 
 from .flat import FlatStrip
 from .outline import sew_outline
 
 
 def overlaps(strip: FlatStrip, tolerance: float) -> bool:
-    """Returns whether the flat strip covers any part of the plane twice.
-
-    A strip is a disc; laid flat it covers nothing twice exactly when its outline is simple.
-    """
+    """Returns whether the piece of the flat strip, as it will be sewn, covers any place twice."""
     outline = sew_outline(strip.p_line, strip.q_line, tolerance=tolerance)
-    return not shapely.Polygon(outline.points).is_valid
+    return covers_twice(outline.points)
 
 
 def non_overlapping_runs(strip: FlatStrip, *, tolerance: float) -> tuple[tuple[int, int], ...]:

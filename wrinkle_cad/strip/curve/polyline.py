@@ -11,7 +11,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from wrinkle_cad.strip.portable import dot
+from wrinkle_cad.strip.portable import atan2, dot
 
 Floats = NDArray[np.float64]
 
@@ -121,3 +121,31 @@ def segment_gaps(points: ArrayLike, starts: ArrayLike, ends: ArrayLike) -> Float
     square = dot(chord, chord)
     along = dot(offset, chord) / np.where(square > 0.0, square, 1.0)
     return row_lengths(offset - np.clip(along, 0.0, 1.0)[..., None] * chord)
+
+
+def _row_products(first: Floats, second: Floats) -> Floats:
+    """(...) float64: scalar products of (..., d) vectors, summed in the order of coordinates."""
+    total: Floats = first[..., 0] * second[..., 0]
+    for axis in range(1, first.shape[-1]):
+        total = total + first[..., axis] * second[..., axis]
+    return total
+
+
+def turnings(points: ArrayLike) -> Floats:
+    """Returns the angle by which a polyline in space turns at each vertex; 0 at both ends.
+
+    Args:
+        points: (k, 3) float64, mm.
+
+    Returns:
+        (k,) float64, radians from 0 to pi.
+
+    Example:
+        >>> turnings([[0.0, 0, 0], [1, 0, 0], [1, 1, 0]]).round(4).tolist()
+        [0.0, 1.5708, 0.0]
+    """
+    steps = np.diff(np.asarray(points, dtype=np.float64), axis=0)
+    turned = np.zeros(len(steps) + 1)
+    sines = row_lengths(np.cross(steps[:-1], steps[1:]))
+    turned[1:-1] = atan2(sines, dot(steps[:-1], steps[1:]))
+    return turned

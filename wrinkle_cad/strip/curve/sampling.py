@@ -96,7 +96,7 @@ def sample_curve(
         )
         parameters = _place(cells, corners, tolerance, margin, max_chord)
         points = evaluate(point_at, parameters)
-        if _largest_gap(point_at, parameters, points) <= tolerance:
+        if float(largest_gaps(point_at, parameters, points).max()) <= tolerance:
             return Samples(parameters, points)
     raise InputError(
         f"curve - has features too narrow to follow from parameter {interval[0]:.9g} to "
@@ -211,8 +211,24 @@ def _merged(corners: FloatArray, arc: FloatArray, shortest: float) -> FloatArray
     return corners[kept]
 
 
-def _largest_gap(point_at: PointAt, parameters: FloatArray, points: FloatArray) -> float:
-    """Largest distance, mm, from the curve itself to its chords."""
+def largest_gaps(point_at: PointAt, parameters: FloatArray, points: FloatArray) -> FloatArray:
+    """Returns how far a curve gets from each of its chords, by checks along it.
+
+    Args:
+        point_at: the curve, from (k,) float64 parameters to (k, 3) points in mm.
+        parameters: (k,) float64, increasing: the chords' ends.
+        points: (k, 3) float64, mm: the curve there.
+
+    Returns:
+        (k - 1,) float64, mm.
+
+    Example:
+        >>> def parabola(t):
+        ...     return np.stack((t, t * t, 0 * t), axis=1)
+        >>> ends = np.array([0.0, 1.0])
+        >>> largest_gaps(parabola, ends, parabola(ends)).round(4).tolist()
+        [0.1768]
+    """
     chords = len(parameters) - 1
     count = max(CHECKS_PER_CHORD, -(-LEAST_CHECKS // chords))
     half = (np.arange(-(-count // 2)) + GOLDEN) / count
@@ -225,4 +241,5 @@ def _largest_gap(point_at: PointAt, parameters: FloatArray, points: FloatArray) 
     square = np.sum(chord * chord, axis=2)
     along = np.clip(np.sum(offset * chord, axis=2) / square, 0.0, 1.0)
     gaps = np.linalg.norm(offset - along[..., None] * chord, axis=2)
-    return float(np.max(gaps))
+    largest: FloatArray = np.max(gaps, axis=1)
+    return largest

@@ -1,0 +1,59 @@
+"""The two rails of a strip, sampled with regard to each other."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .directrix import Directrix, sample_directrix
+
+if TYPE_CHECKING:
+    from wrinkle_cad.strip.curve.sampling import Samples
+
+Floats = NDArray[np.float64]
+
+
+def sample_rails(
+    p: Directrix, q: Directrix, tolerance: float, max_chord: float | None = None
+) -> tuple[Samples, Samples]:
+    """Returns the vertices of both rails of a strip, each with regard to the other.
+
+    Both are judged as they are sampled on their own, so that the rails' order does not matter.
+
+    Args:
+        p: rail P.
+        q: rail Q, which runs as P does.
+        tolerance: mm; how far a chord may lie from its curve.
+        max_chord: mm; longest chord, unlimited when None.
+
+    Raises:
+        InputError: a tolerance or ``max_chord`` that is not positive, or too fine.
+    """
+    alone = [sample_directrix(rail, tolerance, max_chord) for rail in (p, q)]
+    return (
+        samples_against(p, alone[0], alone[1].points, tolerance),
+        samples_against(q, alone[1], alone[0].points, tolerance),
+    )
+
+
+def samples_against(
+    directrix: Directrix, samples: Samples, other: Floats, tolerance: float
+) -> Samples:
+    """Adds to a rail's vertices those that it needs because of the other rail of its strip.
+
+    A directrix given as points keeps these.
+
+    Args:
+        directrix: the rail.
+        samples: its vertices, sampled on its own.
+        other: (l, 3) float64, mm: vertices of the other rail.
+        tolerance: mm; how far a chord may lie from its curve.
+    """
+    # Compiled code is loaded when it is needed, not when a file is read.
+    from wrinkle_cad.strip.curve.joint import sample_against
+
+    if directrix.is_polyline:
+        return samples
+    return sample_against(directrix.point_at, samples, other, tolerance)
