@@ -6,11 +6,38 @@ Names are exported lazily (PEP 562): importing the package loads no CAD kernel.
 from __future__ import annotations
 
 from importlib import import_module
-from typing import Any, Final
+from typing import TYPE_CHECKING, Any, Final
 
 from .settings import VERSION
 
 __version__ = VERSION
+
+# What is found lazily below, for type checkers and editors; a test holds the two together.
+if TYPE_CHECKING:
+    from .batch.executor import run_batch as run_batch
+    from .cad.exchange.read import read_cad as read_cad
+    from .cad.upper.carve import carve as carve
+    from .cad.upper.opening import Opening as Opening
+    from .cad.upper.profiles import wrinkle_profiles as wrinkle_profiles
+    from .cad.upper.stitch import Stitched as Stitched
+    from .cad.upper.stitch import stitch as stitch
+    from .errors import CadError as CadError
+    from .errors import ExportError as ExportError
+    from .errors import Finding as Finding
+    from .errors import InputError as InputError
+    from .errors import JobError as JobError
+    from .errors import WrinkleError as WrinkleError
+    from .job.job import Job as Job
+    from .job.job import make_job as make_job
+    from .job.outcome import JobDone as JobDone
+    from .job.outcome import JobFailed as JobFailed
+    from .job.workflow import run_job as run_job
+    from .pattern.piece.options import NotchRule as NotchRule
+    from .pattern.piece.options import PieceSettings as PieceSettings
+    from .wrinkle.cut_pattern import Pattern as Pattern
+    from .wrinkle.cut_pattern import pattern_of_strips as pattern_of_strips
+    from .wrinkle.strip_report import StripReport as StripReport
+    from .wrinkle.wrinkle_strip import WrinkleStrip as WrinkleStrip
 
 _MODULE_OF: Final = {
     "WrinkleStrip": "wrinkle.wrinkle_strip",
@@ -35,17 +62,21 @@ _MODULE_OF: Final = {
     "JobError": "errors",
     "CadError": "errors",
     "ExportError": "errors",
+    "NotchRule": "pattern.piece.options",
+    "pattern_of_strips": "wrinkle.cut_pattern",
 }
 
 __all__ = ["__version__", *_MODULE_OF]
 
 
-def __getattr__(name: str) -> Any:
-    if name not in _MODULE_OF:
-        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-    value = getattr(import_module(f"{__name__}.{_MODULE_OF[name]}"), name)
-    globals()[name] = value
-    return value
+if not TYPE_CHECKING:
+    # A type checker that saw it would take every name, misspelt ones as well.
+    def __getattr__(name: str) -> Any:
+        if name not in _MODULE_OF:
+            raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+        value = getattr(import_module(f"{__name__}.{_MODULE_OF[name]}"), name)
+        globals()[name] = value
+        return value
 
 
 def __dir__() -> list[str]:

@@ -6,7 +6,7 @@ import datetime
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Any, Final, Literal
 
 from wrinkle_cad import settings
 from wrinkle_cad.wrinkle.triangulated_strip import TriangulatedStrip
@@ -22,6 +22,7 @@ if TYPE_CHECKING:
 
     from .wrinkled_upper import WrinkledUpper
 
+_RAILS: Final[tuple[Literal["P", "Q"], ...]] = ("P", "Q")
 _VIEW_SAG: Final = 0.1
 """mm; how far the triangles of the page's body may lie from its faces."""
 _VIEW_ANGLE: Final = 0.35
@@ -125,7 +126,7 @@ def _notch_parts(made: Made) -> Iterator[Part]:
 
     seen: set[int] = set()
     for index, strip in enumerate(made.strips):
-        for side, rail in enumerate("PQ"):
+        for side, rail in enumerate(_RAILS):
             samples = strip.p_samples if rail == "P" else strip.q_samples
             if id(samples) in seen:
                 continue

@@ -19,7 +19,7 @@ from .numbers import Numbers
 from .page import page_of
 from .tables import cell, table
 
-METHODS: Final[tuple[tuple[str, str, tuple[str, ...], str], ...]] = (
+METHODS: Final[tuple[tuple[str, settings.Search, tuple[settings.Criterion, ...], str], ...]] = (
     ("LODT+LMBT", "local", ("invalid", "bending"), "most valid bridges, looking one step ahead"),
     ("GODT+GMBT", "global", ("invalid", "bending"), "most valid bridges, then least bending"),
     ("LMBT", "local", ("bending",), "least bending, looking one step ahead"),
@@ -80,7 +80,7 @@ def compare(
     p: ArrayLike,
     q: ArrayLike,
     *,
-    energy: str = settings.ENERGY,
+    energy: settings.Energy = settings.ENERGY,
     planarity: float | None = None,
 ) -> tuple[Comparison, ...]:
     """Runs every method of the paper on the same samples.
@@ -106,9 +106,9 @@ def compare(
 def _timed(
     p: ArrayLike,
     q: ArrayLike,
-    search: str,
-    criteria: tuple[str, ...],
-    energy: str,
+    search: settings.Search,
+    criteria: tuple[settings.Criterion, ...],
+    energy: settings.Energy,
     planarity: float | None,
 ) -> tuple[Triangulation, float]:
     def run() -> Triangulation:

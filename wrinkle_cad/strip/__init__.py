@@ -6,7 +6,23 @@ Names are exported lazily (PEP 562): importing the folder compiles nothing and l
 from __future__ import annotations
 
 from importlib import import_module
-from typing import Any, Final
+from typing import TYPE_CHECKING, Any, Final
+
+# What is found lazily below, for type checkers and editors; a test holds the two together.
+if TYPE_CHECKING:
+    from .convexity import validity_matrix as validity_matrix
+    from .curve.sampling import Samples as Samples
+    from .curve.sampling import sample_curve as sample_curve
+    from .flat.unrolling import Unrolling as Unrolling
+    from .flat.unrolling import unroll as unroll
+    from .flat.unrolling import unroll_cones as unroll_cones
+    from .gaps import Gap as Gap
+    from .gaps import covered_lengths as covered_lengths
+    from .gaps import find_gaps as find_gaps
+    from .triangulation import P_STEP as P_STEP
+    from .triangulation import Q_STEP as Q_STEP
+    from .triangulation import Triangulation as Triangulation
+    from .triangulation import triangulate as triangulate
 
 _MODULE_OF: Final = {
     "P_STEP": "triangulation",
@@ -31,12 +47,14 @@ _MODULE_OF: Final = {
 __all__ = sorted(_MODULE_OF)
 
 
-def __getattr__(name: str) -> Any:
-    if name not in _MODULE_OF:
-        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-    value = getattr(import_module(f"{__name__}.{_MODULE_OF[name]}"), name)
-    globals()[name] = value
-    return value
+if not TYPE_CHECKING:
+    # A type checker that saw it would take every name, misspelt ones as well.
+    def __getattr__(name: str) -> Any:
+        if name not in _MODULE_OF:
+            raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+        value = getattr(import_module(f"{__name__}.{_MODULE_OF[name]}"), name)
+        globals()[name] = value
+        return value
 
 
 def __dir__() -> list[str]:

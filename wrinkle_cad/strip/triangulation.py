@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from wrinkle_cad.errors import InputError
-from wrinkle_cad.settings import CRITERIA, ENERGY, SEARCH
+from wrinkle_cad.settings import CRITERIA, ENERGY, SEARCH, Criterion, Energy, Search
 
 from .folding import ENERGIES
 from .global_search import Weights, best_steps, weights_of
@@ -69,11 +69,11 @@ class Triangulation:
     """Triangles of zero area, and folds of 180 degrees, neither of which bends at finite cost."""
     planarity: float
     """mm; how far a neighbour may lie on the wrong side of a valid bridge's plane."""
-    criteria: tuple[str, ...]
+    criteria: tuple[Criterion, ...]
     """What was minimised, in this order."""
-    search: str
+    search: Search
     """"global" or "local"."""
-    energy: str
+    energy: Energy
     """"hinge" or "paper"."""
     is_closed: bool = False
     """Whether the last bridge is the first one again."""
@@ -98,9 +98,9 @@ def triangulate(
     p: npt.ArrayLike,
     q: npt.ArrayLike,
     *,
-    criteria: Sequence[str] = CRITERIA,
-    search: str = SEARCH,
-    energy: str = ENERGY,
+    criteria: Criterion | Sequence[Criterion] = CRITERIA,
+    search: Search = SEARCH,
+    energy: Energy = ENERGY,
     planarity: float | None = None,
 ) -> Triangulation:
     """Returns the triangulation between two rails that is best by ordered criteria.
@@ -142,9 +142,9 @@ def triangulate(
 def _search(
     p: Floats,
     q: Floats,
-    criteria: tuple[str, ...],
+    criteria: tuple[Criterion, ...],
     weights: Weights,
-    search: str,
+    search: Search,
     *,
     planarity: float,
     nothing: float,
@@ -175,9 +175,9 @@ def measured(
     steps: Steps,
     *,
     planarity: float,
-    criteria: tuple[str, ...],
-    search: str,
-    energy: str,
+    criteria: tuple[Criterion, ...],
+    search: Search,
+    energy: Energy,
 ) -> Triangulation:
     """Returns the triangulation that given steps make, with all its measures.
 

@@ -6,7 +6,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from datetime import datetime
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import TYPE_CHECKING, Protocol
 
 from wrinkle_cad import settings
 from wrinkle_cad.errors import Finding
@@ -17,6 +17,8 @@ from wrinkle_cad.pattern.piece.stacking import laid_out
 from wrinkle_cad.strip.sampled_strip import SampledStrip
 
 if TYPE_CHECKING:
+    from build123d import Sketch
+
     from wrinkle_cad.strip.flat.unrolling import Unrolling
 
 
@@ -63,7 +65,7 @@ class Pattern:
         return tuple(finding for piece in self.pieces for finding in piece.findings)
 
     @property
-    def sketch(self) -> Any:
+    def sketch(self) -> Sketch:
         """The cut lines as a build123d ``Sketch`` on XY."""
         from wrinkle_cad.cad.build123d_objects import sketch_from_outline
 

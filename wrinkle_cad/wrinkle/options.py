@@ -49,3 +49,13 @@ class StripSettings:
 
     def __post_init__(self) -> None:
         check_options(self)
+
+
+@dataclass(frozen=True)
+class StripArguments(StripSettings):
+    """What ``WrinkleStrip`` is called with."""
+
+    p: object
+    q: object
+    name: str = field(default=settings.STRIP_NAME, kw_only=True)
+    color: tuple[float, float, float] = field(default=settings.STRIP_COLOR, kw_only=True)

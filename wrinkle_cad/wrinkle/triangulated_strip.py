@@ -3,16 +3,19 @@
 from __future__ import annotations
 
 import contextlib
-from dataclasses import replace
+from dataclasses import fields, replace
 from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Any, Final, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from wrinkle_cad import settings
 from wrinkle_cad.errors import CadError, Finding, InputError
+from wrinkle_cad.options.checking import check_known
+from wrinkle_cad.options.signature import takes_options_of
+from wrinkle_cad.pattern.piece.options import PatternArguments, PieceSettings
 from wrinkle_cad.strip.convexity import validity_matrix
 from wrinkle_cad.strip.curve.polyline import polyline_length
 from wrinkle_cad.strip.flat.unrolling import Unrolling, unroll, unroll_cones
@@ -22,10 +25,11 @@ from wrinkle_cad.strip.triangulation import Triangulation, triangulate
 from .strip_report import Role, StripReport, report_on
 
 if TYPE_CHECKING:
+    from build123d import Shell
     from matplotlib.axes import Axes
+    from OCP.TopoDS import TopoDS_Shell
 
     from wrinkle_cad.cad.rail.directrix import Directrix
-    from wrinkle_cad.pattern.piece.options import PieceSettings
     from wrinkle_cad.strip.curve.sampling import Samples
 
     from .cut_pattern import Pattern
@@ -65,7 +69,7 @@ class TriangulatedStrip:
         tolerance: float,
         name: str,
         color: tuple[float, float, float] = settings.STRIP_COLOR,
-        surface: str = settings.SURFACE,
+        surface: settings.Surface = settings.SURFACE,
         role: Role = "strip",
         findings: tuple[Finding, ...] = (),
     ) -> None:
@@ -75,10 +79,10 @@ class TriangulatedStrip:
         self.tolerance = tolerance
         self.name = name
         self.color = color
-        self.surface = surface
+        self.surface: settings.Surface = surface
         self.role: Role = role
         self.findings = findings
-        self._shells: dict[str, Any] = {}
+        self._shells: dict[str, TopoDS_Shell] = {}
 
     def __repr__(self) -> str:
         t = self.triangulation
@@ -87,7 +91,7 @@ class TriangulatedStrip:
             f"{t.invalid_count} of {t.interior_count} bridges not locally convex)"
         )
 
-    def topods_shell(self, surface: str | None = None) -> Any:
+    def topods_shell(self, surface: settings.Surface | None = None) -> TopoDS_Shell:
         """The surface as the kernel's own shell, made once per kind and shared."""
         kind = self.surface if surface is None else surface
         check_surface(kind)
@@ -99,8 +103,8 @@ class TriangulatedStrip:
             )
         return self._shells[kind]
 
-    def shell(self, surface: str | None = None) -> Any:
-        """The surface as a build123d ``Shell`` with its label and colour.
+    def shell(self, surface: settings.Surface | None = None) -> Shell:
+        """The surface as a build123d ``Shell`` with its label and color.
 
         Args:
             surface: ``cones`` or ``facets``; the strip's own when None.
@@ -112,7 +116,7 @@ class TriangulatedStrip:
 
         return to_build123d(self.topods_shell(surface), label=self.name, color=self.color)
 
-    def rail_points(self, rail: str, arcs_mm: ArrayLike) -> NDArray[np.float64]:
+    def rail_points(self, rail: Literal["P", "Q"], arcs_mm: ArrayLike) -> NDArray[np.float64]:
         """Points on the surface's edge at arc lengths from the rail's start.
 
         Args:
@@ -133,9 +137,13 @@ class TriangulatedStrip:
             curve = make_directrix(samples.points)
         return points_at_arcs(curve, arcs_mm)
 
-    @cached_property
+    @property
     def unrolling(self) -> Unrolling:
         """The strip laid flat: cones or facets, as the strip's surface is."""
+        return self._unrolled
+
+    @cached_property
+    def _unrolled(self) -> Unrolling:
         if self.surface == "facets":
             return unroll(self.triangulation)
         return unroll_cones(
@@ -222,6 +230,7 @@ class TriangulatedStrip:
             return self.p.length, self.q.length
         return polyline_length(self.triangulation.p), polyline_length(self.triangulation.q)
 
+    @takes_options_of(PatternArguments)
     def pattern(self, piece_settings: PieceSettings | None = None, **options: Any) -> Pattern:
         """The flat pattern.
 
@@ -234,14 +243,9 @@ class TriangulatedStrip:
             InputError: the flat strip covers itself and the settings forbid to split it, or an
                 option is unknown or out of its range.
         """
-        from wrinkle_cad.pattern.piece.options import PieceSettings
-
         from .cut_pattern import pattern_of_strips
 
-        known = PieceSettings.__dataclass_fields__
-        for name in options:
-            if name not in known:
-                raise InputError(f"pattern option - {name!r} - one of {', '.join(known)}")
+        check_known(options, (option.name for option in fields(PieceSettings)), "pattern()")
         base = piece_settings or PieceSettings(tolerance=self.tolerance)
         return pattern_of_strips([self], replace(base, **options))
 
@@ -263,7 +267,9 @@ class TriangulatedStrip:
 
         return plot_pattern(ax, self.pattern(piece_settings).pieces)
 
-    def export_step(self, path: str | Path, *, schema: str = settings.STEP_SCHEMA) -> None:
+    def export_step(
+        self, path: str | Path, *, schema: settings.StepSchema = settings.STEP_SCHEMA
+    ) -> None:
         """Writes the surface as STEP.
 
         Raises:
@@ -289,4 +295,4 @@ class TriangulatedStrip:
 def check_surface(surface: str) -> None:
     """Raises an ``InputError`` unless the kind of surface is known."""
     if surface not in settings.SURFACES:
-        raise InputError(f"surface - {surface!r} - one of {', '.join(settings.SURFACES)}")
+        raise InputError(f"surface cannot be {surface!r}: give {' or '.join(settings.SURFACES)}.")

@@ -1,9 +1,9 @@
-"""Gives what was made from a caller's object the names and colours of that object."""
+"""Gives what was made from a caller's object the names and colors of that object."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from OCP.TopoDS import TopoDS_Face, TopoDS_Shape
 
@@ -12,9 +12,12 @@ from wrinkle_cad.cad.kernel.connectivity import joined_faces
 from wrinkle_cad.cad.kernel.shape_index import ShapeIndex
 from wrinkle_cad.cad.kernel.topology import faces_of
 
+if TYPE_CHECKING:
+    from build123d import Compound, Face, Shell
 
-def alike(shape: TopoDS_Shape, source: object, label: str = "") -> Any:
-    """Returns a shape as a build123d object with the label and colour of a source object.
+
+def alike(shape: TopoDS_Shape, source: object, label: str = "") -> Face | Shell | Compound:
+    """Returns a shape as a build123d object with the label and color of a source object.
 
     Args:
         shape: what was made; shared, not copied.
@@ -28,8 +31,8 @@ def alike(shape: TopoDS_Shape, source: object, label: str = "") -> Any:
 
 def body_alike(
     body: TopoDS_Shape, origin: Sequence[int], upper: TopoDS_Shape, source: object
-) -> Any:
-    """Returns a body as a build123d object with all names and colours of the upper.
+) -> Face | Shell | Compound:
+    """Returns a body as a build123d object with all names and colors of the upper.
 
     Where the upper was an assembly, so is the body: each child keeps what is left of its faces.
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,6 +13,9 @@ from wrinkle_cad.cad.rail.directrix import Directrix
 
 from .outline import Rail
 from .smooth import curve_edges, edge_row
+
+if TYPE_CHECKING:
+    from build123d import Compound, Edge, Face, Shell, Wire
 
 Floats = NDArray[np.float64]
 
@@ -72,7 +75,7 @@ class Opening:
     """The upper as it was given."""
     request: CarveRequest
     """What was asked for."""
-    source: Any = None
+    source: object = None
     """The object that the upper came in, whose names and colours the body keeps."""
 
     @property
@@ -81,21 +84,21 @@ class Opening:
         return self.areas[1] + self.areas[2] - self.areas[0]
 
     @property
-    def body(self) -> Any:
+    def body(self) -> Face | Shell | Compound:
         """The upper without the strip, as build123d has it, its names and colours kept."""
         from wrinkle_cad.cad.exchange.likeness import body_alike
 
         return body_alike(self.body_shape, self.face_origin, self.given_shape, self.source)
 
     @property
-    def removed(self) -> Any:
+    def removed(self) -> Face | Shell | Compound:
         """What was cut out, as build123d has it."""
         from wrinkle_cad.cad.exchange.likeness import alike
 
         return alike(self.removed_shape, self.source, "removed")
 
     @property
-    def p(self) -> Any:
+    def p(self) -> Edge | Wire | Compound:
         """The opening's boundary along P: an edge of the body, or a wire of several.
 
         Where the upper has a gap that P crosses, it is a compound.
@@ -103,17 +106,17 @@ class Opening:
         return _curve(self.p_edges, "P")
 
     @property
-    def q(self) -> Any:
+    def q(self) -> Edge | Wire | Compound:
         """The opening's boundary along Q."""
         return _curve(self.q_edges, "Q")
 
     @property
-    def rail_p(self) -> Any:
+    def rail_p(self) -> Edge | Wire:
         """P as it lies on the upper: a build123d edge or wire."""
         return _curve(tuple(curve_edges(self.rail_p_curve)), "P")
 
     @property
-    def rail_q(self) -> Any:
+    def rail_q(self) -> Edge | Wire:
         """Q as it lies on the upper."""
         return _curve(tuple(curve_edges(self.rail_q_curve)), "Q")
 

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,6 +21,9 @@ from wrinkle_cad.strip.portable import cos, sin
 from .opening import Opening
 from .outline import Rail
 from .smooth import curve_edges, smooth_edge
+
+if TYPE_CHECKING:
+    from build123d import Edge
 
 Floats = NDArray[np.float64]
 Wave = Callable[[Floats], Floats]
@@ -38,7 +41,7 @@ def wrinkle_profiles(
     fade: float = settings.FADE,
     side: settings.WaveSide = settings.WAVE_SIDE,
     across: Shift = 0.0,
-) -> tuple[Any, Any]:
+) -> tuple[Edge, Edge]:
     """Designs the two profiles of a wrinkle over an opening.
 
     Every value may be one number or a pair, for P and for Q.

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
-from typing import Any
+from typing import TYPE_CHECKING, cast
 
 import numpy as np
 from numpy.typing import NDArray
@@ -26,6 +26,9 @@ from .end_fans import end_fan
 from .opening import Opening
 from .seam_angle import SeamAngle, seam_angles
 from .sew import Sewn, sew
+
+if TYPE_CHECKING:
+    from build123d import Shell
 
 Floats = NDArray[np.float64]
 STEP = "stitch the wrinkle into the upper"
@@ -70,15 +73,15 @@ class Stitched:
     """What it was measured to be."""
     parts: tuple[tuple[str, tuple[TopoDS_Face, ...]], ...]
     """The shell's faces by what they are: ``body``, then per strip its name and bands."""
-    source: Any
+    source: object
     """The object that the upper came in."""
 
     @property
-    def shell(self) -> Any:
-        """The shell as build123d has it, with the upper's name and colour."""
+    def shell(self) -> Shell:
+        """The shell as build123d has it, with the upper's name and color."""
         from wrinkle_cad.cad.exchange.likeness import alike
 
-        return alike(self.shell_shape, self.source, "upper")
+        return cast("Shell", alike(self.shell_shape, self.source, "upper"))
 
 
 def stitch(

@@ -249,3 +249,11 @@ class PieceSettings(PieceOptions):
         """Mm from the surface to the neutral layer, along the surface normal (right side)."""
         share = {"inside": 0.5, "middle": 0.0, "outside": -0.5}[self.surface_side]
         return share * (self.thickness or 0.0)
+
+
+@dataclass(frozen=True)
+class PatternArguments(PieceSettings):
+    """What ``pattern()`` of a strip is called with."""
+
+    piece_settings: PieceSettings | None = None
+    """Settings that the options given one by one go before."""
