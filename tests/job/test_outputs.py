@@ -65,6 +65,22 @@ def test_nothing_appears_when_writing_fails_and_the_old_outputs_stay(job: Job) -
     assert len(list(job.output_dir.iterdir())) == 3
 
 
+def test_when_one_output_cannot_take_its_name_all_stay_as_they_were(job: Job) -> None:
+    write_all(job, "first")
+
+    def write_without_a_page() -> None:
+        with outputs_together(job, KINDS) as paths:
+            paths["step"].write_text("second")
+            paths["json"].write_text("{}")
+
+    with pytest.raises(FileNotFoundError):
+        write_without_a_page()
+    assert (job.output_dir / "shoe.step").read_text() == "first"
+    assert (job.output_dir / "shoe.json").read_text() != "{}"
+    check_outputs_are_ours(job, KINDS)
+    assert len(list(job.output_dir.iterdir())) == 3
+
+
 @pytest.mark.parametrize("kind", KINDS)
 def test_a_file_of_somebody_else_is_not_replaced(job: Job, kind: str) -> None:
     job.output_dir.mkdir()

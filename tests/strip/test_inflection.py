@@ -7,6 +7,7 @@ from tests.strip import exact_strips
 from tests.strip.exact_strips import stack
 from wrinkle_cad.strip import Triangulation, triangulate
 from wrinkle_cad.strip.inflection import plane_misfit
+from wrinkle_cad.strip.rails import coarser_sagitta
 from wrinkle_cad.strip.triangulation import measured
 
 
@@ -90,6 +91,30 @@ def test_twist_without_a_change_of_bending_is_no_inflection(slope: float) -> Non
     found = triangulate(*twisted_paraboloid(slope, 1e-4), criteria=("length",))
     assert found.invalid_count > 30
     assert found.inflection_count == 0
+
+
+def distance_from_a_common_plane(p: np.ndarray, q: np.ndarray, i: int, j: int) -> float:
+    """mm; least largest distance of a bridge's four neighbours from a plane through it, by trial."""
+    ruling = (q[j] - p[i]) / np.linalg.norm(q[j] - p[i])
+    first = np.cross(ruling, np.eye(3)[np.argmin(np.abs(ruling))])
+    first /= np.linalg.norm(first)
+    turn = np.linspace(0.0, np.pi, 4001)[:, None]
+    normals = np.cos(turn) * first + np.sin(turn) * np.cross(ruling, first)
+    ends = (p[max(i - 1, 0)], p[min(i + 1, len(p) - 1)], q[max(j - 1, 0)])
+    offsets = np.array([*ends, q[min(j + 1, len(q) - 1)]]) - p[i]
+    return float(np.abs(normals @ offsets.T).max(axis=1).min())
+
+
+@pytest.mark.parametrize("tolerance", [1e-2, 1e-3])
+def test_at_an_inflection_the_sheet_is_flat_to_within_two_sagittas(tolerance: float) -> None:
+    """Beyond that it is twisted, and an invalid bridge is a defect whatever bends beside it."""
+    for seed in range(6):
+        strip = exact_strips.wrinkled(seed).sampled(tolerance)
+        found = triangulate(strip.p, strip.q)
+        assert found.inflection.any()
+        limit = 2.0 * coarser_sagitta(strip.p, strip.q)
+        for i, j in found.bridges[found.inflection]:
+            assert distance_from_a_common_plane(strip.p, strip.q, i, j) < 1.001 * limit
 
 
 def zigzag(p: np.ndarray, q: np.ndarray) -> Triangulation:
