@@ -86,7 +86,7 @@ def piece_settings_of(job: Job, limits: Limits) -> PieceSettings:
 
     Args:
         job: the settings.
-        limits: with the material's name and thickness.
+        limits: with the material's name, thickness and K-factor.
 
     Raises:
         InputError: a setting does not fit a piece.
@@ -94,6 +94,8 @@ def piece_settings_of(job: Job, limits: Limits) -> PieceSettings:
     options = values_of(job, PieceOptions)
     if job.thickness is None:
         options["thickness"] = limits.thickness_mm
+    if job.k_factor is None:
+        options["k_factor"] = limits.k_factor
     return PieceSettings(**options, tolerance=job.tolerance, material=limits.material)
 
 

@@ -108,7 +108,8 @@ def _make(job: Job, chosen: Chosen, clock: PhaseClock) -> Made:
         for strip in strips:
             strip.topods_shell()
     with clock.phase("pattern"):
-        pattern = pattern_of_strips(strips, piece_settings)
+        turned_over = () if upper is None else upper.turned_over
+        pattern = pattern_of_strips(strips, piece_settings, turned_over=turned_over)
     name = "" if chosen.upper is None else chosen.upper.name
     return Made(strips, pattern, limits, upper, name or job.name)
 

@@ -6,6 +6,8 @@ import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from wrinkle_cad import settings
 from wrinkle_cad.errors import Finding
 from wrinkle_cad.wrinkle.triangulated_strip import TriangulatedStrip
@@ -35,6 +37,19 @@ class WrinkledUpper:
     """The strips between the openings' boundaries and the wrinkles."""
     stitched: Stitched
     """The shell and its report."""
+
+    @property
+    def turned_over(self) -> tuple[bool, ...]:
+        """For each strip, then each band, whether its normal points to the upper's inside."""
+        from wrinkle_cad.wrinkle.facing import faces_away
+
+        rails = [rail.feet for opening in self.openings for rail in opening.rails]
+        points = np.vstack([feet.points for feet in rails])
+        outward = np.vstack([feet.normals for feet in rails])
+        return tuple(
+            faces_away(strip.triangulation, points, outward)
+            for strip in (*self.strips, *self.bands)
+        )
 
     @property
     def findings(self) -> tuple[Finding, ...]:

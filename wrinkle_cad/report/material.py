@@ -2,6 +2,7 @@
 
 name = "calf leather, 1.2 mm"
 thickness_mm = 1.2
+k_factor = 0.5
 smallest_bend_radius_mm = 2.0
 largest_twist_deg = 4.0
 """
@@ -17,7 +18,7 @@ from typing import Any, ClassVar, Final
 from wrinkle_cad.errors import InputError
 from wrinkle_cad.options.option import option
 
-_KEYS: Final = ("name", "thickness_mm", "smallest_bend_radius_mm", "largest_twist_deg")
+_KEYS: Final = ("name", "thickness_mm", "k_factor", "smallest_bend_radius_mm", "largest_twist_deg")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -67,6 +68,8 @@ class Limits(LimitSettings):
     """How sharply the material may be bent."""
     thickness_mm: float = 0.0
     """Of the material: bends finer than this are one bend to it."""
+    k_factor: float | None = None
+    """Where the neutral layer lies in a bend, as a share of the thickness from its inner face."""
     material: str = ""
     """Name of the material."""
 
@@ -87,8 +90,8 @@ def read_material(path: Path, limits: Limits | None = None) -> Limits:
     """Adds a material's limits to those given one by one.
 
     Args:
-        path: a TOML file with ``name``, ``thickness_mm``, ``smallest_bend_radius_mm`` and
-            ``largest_twist_deg``; all but the name may be missing.
+        path: a TOML file with ``name``, ``thickness_mm``, ``k_factor``, ``smallest_bend_radius_mm``
+            and ``largest_twist_deg``; all but the name may be missing.
         limits: those given one by one; a twist limit among them wins over the material's.
 
     Raises:
@@ -101,6 +104,7 @@ def read_material(path: Path, limits: Limits | None = None) -> Limits:
         limits,
         material=table["name"],
         thickness_mm=table.get("thickness_mm", 0.0),
+        k_factor=table.get("k_factor"),
         smallest_bend_radius_mm=table.get("smallest_bend_radius_mm"),
         max_twist_deg=twist if limits.max_twist_deg is None else limits.max_twist_deg,
     )
@@ -121,6 +125,11 @@ def _read_table(path: Path) -> dict[str, Any]:
             )
         if key != "name":
             _check_length(path, key, value)
+    if not 0.0 < table.get("k_factor", 0.5) < 1.0:
+        raise InputError(
+            f"The material {path.name} has the k_factor {table['k_factor']}. Give a share of the "
+            "thickness between 0 and 1."
+        )
     if not isinstance(table.get("name"), str) or not table["name"].strip():
         raise InputError(f'material {path.name} - no name - a text - add name = "..."')
     return table

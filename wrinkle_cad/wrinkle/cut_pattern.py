@@ -10,7 +10,13 @@ from typing import TYPE_CHECKING, Protocol
 
 from wrinkle_cad import settings
 from wrinkle_cad.errors import Finding
-from wrinkle_cad.pattern.piece.making import make_pieces, rail_corners
+from wrinkle_cad.pattern.piece.making import (
+    StripParts,
+    draft_pieces,
+    finished_pieces,
+    refused_on_rails,
+    strip_parts,
+)  # fmt: skip
 from wrinkle_cad.pattern.piece.options import NotchRule, PieceSettings
 from wrinkle_cad.pattern.piece.piece import PatternPiece
 from wrinkle_cad.pattern.piece.stacking import laid_out
@@ -140,40 +146,58 @@ class Pattern:
 
 
 def pattern_of_strips(
-    strips: Iterable[FlatStrip], piece_settings: PieceSettings | None = None
+    strips: Iterable[FlatStrip],
+    piece_settings: PieceSettings | None = None,
+    *,
+    turned_over: Sequence[bool] = (),
 ) -> Pattern:
     """Makes the pieces of strips and lays them out.
+
+    Strips that share a rail are sewn together there: their notches stand at the same arcs, and
+    where one of them can have none the other has none either.
 
     Args:
         strips: each gives one piece, or several where it must be split.
         piece_settings: of every piece; the defaults when None.
+        turned_over: for each strip whether ``p' x (q - p)`` points away from its right side, as
+            it may on an upper; not when empty.
 
     Raises:
         InputError: a strip covers itself when flat and is not to be split, or a setting does not
             fit it.
     """
-    chosen = piece_settings or PieceSettings()
     given = list(strips)
+    over = tuple(turned_over) or (False,) * len(given)
+    chosen = piece_settings or PieceSettings()
+    parts = [
+        strip_parts(
+            strip.unrolling, strip.triangulation, name=strip.name, settings=chosen, turned_over=side
+        )
+        for strip, side in zip(given, over, strict=True)
+    ]
+    own_settings = list(_settings_by_strip(given, parts, chosen))
+    drafts = [draft_pieces(*pair) for pair in zip(parts, own_settings, strict=True)]
+    refused: dict[int, tuple[float, ...]] = {}
+    for strip, draft in zip(given, drafts, strict=True):
+        for rail, arcs in zip(_rails(strip), refused_on_rails(draft), strict=True):
+            refused[rail] = (*refused.get(rail, ()), *arcs)
     made = [
         (index, piece)
-        for index, (strip, own) in enumerate(
-            zip(given, _settings_by_strip(given, chosen), strict=True)
-        )
-        for piece in make_pieces(
-            strip.unrolling, strip.triangulation, name=strip.name, settings=own
+        for index, (strip, draft, own) in enumerate(zip(given, drafts, own_settings, strict=True))
+        for piece in finished_pieces(
+            draft, own, left_out=(refused[_rails(strip)[0]], refused[_rails(strip)[1]])
         )
     ]
     return Pattern(laid_out([piece for _, piece in made]), tuple(index for index, _ in made))
 
 
 def _settings_by_strip(
-    strips: Sequence[FlatStrip], chosen: PieceSettings
+    strips: Sequence[FlatStrip], parts: Sequence[StripParts], chosen: PieceSettings
 ) -> Iterator[PieceSettings]:
     """The settings of each strip: seams know the corners of the strip on their other side."""
     corners: dict[int, list[float]] = {}
-    for strip in strips:
-        both = rail_corners(strip.unrolling, strip.triangulation, name=strip.name, settings=chosen)
-        for rail, at in zip(_rails(strip), both, strict=True):
+    for strip, own in zip(strips, parts, strict=True):
+        for rail, at in zip(_rails(strip), own.corners, strict=True):
             corners.setdefault(rail, []).extend(at.tolist())
     rules: dict[int, NotchRule] = {}
     for strip in strips:

@@ -143,7 +143,7 @@ def edges(outline):
 
 
 def test_a_pair_does_not_fit_into_one_piece():
-    with pytest.raises(InputError, match="2 pieces wanted"):
+    with pytest.raises(InputError, match="2 pieces of vamp are wanted"):
         make_piece(*strips.rectangle(), name="vamp", settings=PieceSettings(hand="left"))
 
 
@@ -151,7 +151,8 @@ def test_the_texts_say_what_a_cutting_room_asks():
     settings = PieceSettings(size="38", quantity=2, material="Calf", tolerance=0.1)
     piece = make_piece(*strips.rectangle(), name="vamp", settings=settings)
     assert piece.texts == (
-        "vamp", "SIZE 38", "QUANTITY 2", "MATERIAL Calf", "UNITS MM, CHORD TOLERANCE 0.1 MM",
+        "vamp", "SIZE 38", "QUANTITY 2", "RIGHT SIDE UP", "MATERIAL Calf",
+        "UNITS MM, CHORD TOLERANCE 0.1 MM",
     )  # fmt: skip
 
 

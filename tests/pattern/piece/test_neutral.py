@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from tests.pattern import strips
-from wrinkle_cad.pattern.piece.making import make_piece
+from wrinkle_cad.pattern.piece.making import make_piece, make_pieces
 from wrinkle_cad.pattern.piece.options import PieceSettings
 from wrinkle_cad.strip import triangulate, unroll
 
@@ -80,3 +80,37 @@ def test_notches_stay_at_the_arc_lengths_of_the_surface():
     )
     assert [n.arc for n in thin.notches] == [n.arc for n in thick.notches]
     assert thick.notches[-1].seam[0] > thin.notches[-1].seam[0]
+
+
+def k_piece(made, k_factor, *, side="middle", thickness=3.0, turned_over=False):
+    settings = PieceSettings(
+        thickness=thickness, surface_side=side, k_factor=k_factor, tolerance=1e-6
+    )
+    (piece,) = make_pieces(*made, name="tube", settings=settings, turned_over=turned_over)
+    return piece
+
+
+@pytest.mark.parametrize("inward", [False, True])
+def test_three_mm_of_sheet_at_k_a_third_are_0_8_mm_shorter_over_90_degrees(inward):
+    """(0.5 - K) t theta, whichever way it bends: the inner face is compressed."""
+    made = strips.cylinder(RADIUS, 0.5 * np.pi, WIDTH, 200, inward=inward)
+    shorter = length_of(k_piece(made, 0.5)) - length_of(k_piece(made, 0.33))
+    assert shorter == pytest.approx(0.17 * 3.0 * 0.5 * np.pi, abs=1e-6)
+    assert shorter == pytest.approx(0.80, abs=0.005)
+
+
+@pytest.mark.parametrize("inward", [False, True])
+@pytest.mark.parametrize(("side", "lowest"), [("inside", 0.0), ("middle", -0.5), ("outside", -1.0)])
+@pytest.mark.parametrize("turned_over", [False, True])
+def test_the_neutral_layer_counts_from_the_inner_face_of_the_bend(
+    side, lowest, inward, turned_over
+):
+    """The material fills lowest...lowest + 1 thicknesses on the right side of the surface."""
+    angle, k_factor, thickness = 1.5, 0.4, 2.0
+    made = strips.cylinder(RADIUS, angle, WIDTH, 400, inward=inward)
+    piece = k_piece(made, k_factor, side=side, thickness=thickness, turned_over=turned_over)
+    # Seen from the axis the right side lies outside unless exactly one of the two turns it.
+    is_outside = inward == turned_over
+    inner = lowest if is_outside else -lowest - 1.0
+    radius = RADIUS + thickness * (inner + k_factor)
+    assert length_of(piece) == pytest.approx(radius * angle, rel=1e-5)

@@ -6,9 +6,13 @@ import shapely
 
 from tests.pattern import strips
 from wrinkle_cad.errors import InputError
+from wrinkle_cad.pattern.formats.drawing import draw
 from wrinkle_cad.pattern.piece.making import make_pieces
+from wrinkle_cad.pattern.piece.notch_forms import notch_lines
 from wrinkle_cad.pattern.piece.notches import corner_arcs, notch_arcs
 from wrinkle_cad.pattern.piece.options import NotchRule, PieceSettings
+
+SLOW = pytest.mark.slow
 
 
 def test_counted_notches_divide_the_rail_evenly():
@@ -120,7 +124,6 @@ def test_no_notch_stands_on_a_kink_of_its_rail():
 
 
 def test_the_forms_of_notches_have_their_depth_and_width():
-    from wrinkle_cad.pattern.formats.drawing import notch_lines
 
     for kind in ("slit", "v", "t", "castle", "check", "u"):
         settings = PieceSettings(
@@ -133,3 +136,87 @@ def test_the_forms_of_notches_have_their_depth_and_width():
             {"slit": 0.0, "check": 1.0}.get(kind, 2.0), abs=1e-9
         )
         assert points[:, 1].min() == pytest.approx(-10.0)
+
+
+def refusals(pieces):
+    return [f for piece in pieces for f in piece.findings if f.code == "notch-left-out"]
+
+
+def dart(mouth=4.0, depth=24.0):
+    """A flat strap with a dart in P whose two allowances of 6 mm are wider than its mouth."""
+    from tests.pattern.strips import unrolled
+
+    left, right = 60.0 - 0.5 * mouth, 60.0 + 0.5 * mouth
+    p = np.array(((0, 0, 0), (left, 0, 0), (60, depth, 0), (right, 0, 0), (120, 0, 0)))
+    return unrolled(p, np.array(((0, 40, 0), (120, 40, 0))))
+
+
+NINE = PieceSettings(seam_allowance=(6.0,) * 4, notches=9)
+
+
+def test_notches_in_a_dart_that_its_allowance_closes_are_left_out_with_their_partners():
+    (piece,) = make_pieces(*dart(), name="dart", settings=NINE)
+    told = refusals([piece])
+    on_p = [notch for notch in piece.notches if notch.side == 0]
+    assert len(on_p) + len(told) == 9
+    assert len(told) >= 2
+    for notch in on_p:
+        assert np.hypot(*(notch.position - notch.seam)) <= 2.0 * 6.0 + 1e-9
+    assert "both edges" in told[0].message
+
+
+@pytest.mark.parametrize(("mouth", "closed"), [(4.0, True), (9.0, True), (30.0, False)])
+def test_a_dart_narrower_than_its_allowance_is_told(mouth, closed):
+    (piece,) = make_pieces(*dart(mouth), name="dart", settings=NINE)
+    assert ("dart-closed" in [finding.code for finding in piece.findings]) == closed
+    (plain,) = make_pieces(*dart(mouth), name="dart")
+    assert plain.findings == ()
+
+
+def test_without_an_allowance_a_notch_is_a_mark_and_nothing_is_cut_into_the_product():
+    settings = PieceSettings(notches=3, notch_kind="v", seam_allowance=(0.0, 5.0, 0.0, 0.0))
+    (piece,) = make_pieces(*strips.rectangle(), name="s", settings=settings)
+    assert [notch.is_cut for notch in piece.notches] == [False] * 3 + [True] * 3
+    drawing = draw(piece)
+    assert len([s for s in drawing.strokes if s.role == "mark"]) == 3
+    for stroke in drawing.strokes:
+        if stroke.role in ("notch", "cut"):
+            inside = shapely.Polygon(piece.sew_line).buffer(-1e-6)
+            assert not shapely.LineString(stroke.points).intersects(inside)
+
+
+@pytest.mark.parametrize(
+    "seed", [*range(20), *(pytest.param(s, marks=SLOW) for s in range(20, 200))]
+)
+def test_every_notch_is_within_the_mitre_or_told_and_no_slit_crosses(seed):
+    random = np.random.default_rng(seed)
+    widths = tuple(random.uniform(2.0, 10.0, 4).tolist())
+    kind = ("slit", "v", "t", "castle", "check", "u")[seed % 6]
+    settings = PieceSettings(seam_allowance=widths, notches=9, notch_kind=kind)
+    pieces = make_pieces(*strips.random_strip(seed), name="s", settings=settings)
+    for piece in pieces:
+        corners = shapely.MultiPoint(piece.cut_line[piece.cut.corners])
+        sew = shapely.Polygon(piece.sew_line)
+        shapes = []
+        for notch in piece.notches:
+            away = np.hypot(*(notch.position - notch.seam))
+            assert away <= settings.mitre_limit * piece.widths[notch.side] + 0.05
+            assert notch.depth <= 0.6 * away + 1e-9
+            shape = shapely.MultiLineString(notch_lines(notch))
+            assert shape.distance(corners) >= 0.5 - 1e-9
+            assert not shape.intersects(sew)
+            assert all(shape.distance(other) >= 0.5 - 1e-9 for other in shapes)
+            shapes.append(shape)
+    for side in (0, 1):
+        stand = sum(notch.side == side for piece in pieces for notch in piece.notches)
+        told = sum(f" of {'PQ'[side]} of s" in finding.message for finding in refusals(pieces))
+        wanted = wanted_notches(strips.random_strip(seed), settings, side)
+        assert stand + told == wanted
+
+
+def wanted_notches(strip, settings, side):
+    from wrinkle_cad.pattern.piece.making import strip_parts
+    from wrinkle_cad.pattern.piece.placing import seam_arcs
+
+    parts = strip_parts(*strip, name="s", settings=settings)
+    return len(seam_arcs(parts.strip, parts.parts, settings)[side])

@@ -22,9 +22,17 @@ from ezdxf.layouts import BlockLayout
 
 from wrinkle_cad import settings
 from wrinkle_cad.errors import Finding
+from wrinkle_cad.pattern.piece.notch_forms import notch_lines
 from wrinkle_cad.pattern.piece.options import NotchKind
 from wrinkle_cad.pattern.piece.outline import closed_turns
-from wrinkle_cad.pattern.piece.piece import Bools, Floats, PatternPiece, frozen, make_outline
+from wrinkle_cad.pattern.piece.piece import (
+    RIGHT_SIDE,
+    Bools,
+    Floats,
+    PatternPiece,
+    frozen,
+    make_outline,
+)  # fmt: skip
 
 from .cutter import rounded
 from .layers import LayerStyle, Profile, Role
@@ -133,7 +141,7 @@ def _write_texts(block: BlockLayout, piece: PatternPiece, profile: Profile) -> l
     corner = piece.grain_line.mean(axis=0)
     _write_column(block, system, "1", corner, height)
     if "text" in profile.styles:
-        notes = [f"CHORD TOLERANCE {piece.tolerance:g} MM"]
+        notes = [RIGHT_SIDE, f"CHORD TOLERANCE {piece.tolerance:g} MM"]
         if piece.hand:
             notes.append(piece.hand.upper())
         if len(piece.rulings) and "mountain" in profile.styles and "valley" in profile.styles:
@@ -171,6 +179,10 @@ def _write_lines(block: BlockLayout, piece: PatternPiece, profile: Profile) -> N
         role: Role = "mountain" if fold > 0.0 else "valley"
         if abs(fold) >= settings.FLAT_FOLD and role in styles:
             _write_contour(block, line, np.ones(2, dtype=np.bool_), styles[role], is_closed=False)
+    if "mark" in styles:
+        for notch in (notch for notch in piece.notches if not notch.is_cut):
+            for line in notch_lines(notch):
+                _write_contour(block, line, np.ones(2, np.bool_), styles["mark"], is_closed=False)
     _write_arrow(block, piece.grain_line, styles.get("grain"))
     if piece.stretch_line is not None:
         _write_arrow(block, piece.stretch_line, styles.get("stretch"))
@@ -214,7 +226,7 @@ def _densified(points: Floats, *, is_closed: bool) -> Floats:
 
 def _write_marks(block: BlockLayout, piece: PatternPiece, profile: Profile) -> None:
     if "notch" in profile.styles:
-        for notch in piece.notches:
+        for notch in (notch for notch in piece.notches if notch.is_cut):
             layer = profile.styles["notch"].layer
             if profile.name == "astm":
                 layer = _ASTM_NOTCHES.get(notch.kind, layer)

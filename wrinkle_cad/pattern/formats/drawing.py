@@ -12,8 +12,8 @@ import numpy as np
 import shapely
 
 from wrinkle_cad import settings
-from wrinkle_cad.pattern.piece.options import NotchKind
-from wrinkle_cad.pattern.piece.piece import Floats, Notch, PatternPiece, frozen
+from wrinkle_cad.pattern.piece.notch_forms import notch_lines
+from wrinkle_cad.pattern.piece.piece import Floats, PatternPiece, frozen
 
 from .layers import Role
 
@@ -66,38 +66,14 @@ def draw(piece: PatternPiece) -> Drawing:
     strokes.append(Stroke("grain", piece.grain_line))
     if piece.stretch_line is not None:
         strokes.append(Stroke("stretch", piece.stretch_line))
-    strokes += [Stroke("notch", line) for notch in piece.notches for line in notch_lines(notch)]
+    for notch in piece.notches:
+        # Without an allowance a slit would go into the product.
+        role: Role = "notch" if notch.is_cut else "mark"
+        strokes += [Stroke(role, line) for line in notch_lines(notch)]
     strokes += [Stroke("cut", outline, is_closed=True) for outline in piece.cut_outs]
     strokes.append(Stroke("cut", piece.cut_line, is_closed=True))
     spots = tuple(Spot("punch", frozen(hole)) for hole in piece.drill_holes)
     return Drawing(tuple(strokes), spots, _labels(piece))
-
-
-def notch_lines(notch: Notch) -> tuple[Floats, ...]:
-    """Returns the polylines, (k, 2) mm each, that are cut for a notch, from the cut line inward."""
-    along = np.array((notch.direction[1], -notch.direction[0]))
-    foot = notch.position
-    tip = foot + notch.depth * notch.direction
-    half = 0.5 * notch.width * along
-    shoulder = 0.75 * notch.depth * notch.direction
-    shapes: dict[NotchKind, tuple[tuple[Floats, ...], ...]] = {
-        "slit": ((foot, tip),),
-        "v": ((foot - half, tip, foot + half),),
-        "t": ((foot, tip), (tip - half, tip + half)),
-        "castle": ((foot - half, tip - half, tip + half, foot + half),),
-        "check": ((foot, tip, foot + half),),
-        "u": (
-            (
-                foot - half,
-                foot - half + shoulder,
-                tip - 0.5 * half,
-                tip + 0.5 * half,
-                foot + half + shoulder,
-                foot + half,
-            ),
-        ),
-    }
-    return tuple(frozen(np.vstack(line)) for line in shapes[notch.kind])
 
 
 def _labels(piece: PatternPiece) -> tuple[Label, ...]:

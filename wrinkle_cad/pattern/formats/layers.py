@@ -18,11 +18,11 @@ from typing import Final, Literal
 from wrinkle_cad.errors import InputError
 
 Role = Literal[
-    "cut", "sew", "notch", "grain", "stretch", "mountain", "valley", "punch", "text",
+    "cut", "sew", "notch", "mark", "grain", "stretch", "mountain", "valley", "punch", "text",
     "test_square",
 ]  # fmt: skip
 ROLES: Final[tuple[Role, ...]] = (
-    "cut", "sew", "notch", "grain", "stretch", "mountain", "valley", "punch", "text",
+    "cut", "sew", "notch", "mark", "grain", "stretch", "mountain", "valley", "punch", "text",
     "test_square",
 )  # fmt: skip
 
@@ -74,6 +74,7 @@ _CUTTER: Final[Mapping[Role, LayerStyle]] = MappingProxyType(
         "cut": LayerStyle("CUT", 1),
         "sew": LayerStyle("SEW", 3),
         "notch": LayerStyle("NOTCH", 6),
+        "mark": LayerStyle("MARK", 6),
         "grain": LayerStyle("GRAIN", 4),
         "stretch": LayerStyle("STRETCH", 30, "DASHDOT"),
         "mountain": LayerStyle("RULING", 1, "DASHDOT"),
@@ -88,6 +89,7 @@ _TRADE: Final[Mapping[Role, LayerStyle]] = MappingProxyType(
         "cut": LayerStyle("1"),
         "sew": LayerStyle("14"),
         "notch": LayerStyle("4"),
+        "mark": LayerStyle("8"),
         "grain": LayerStyle("7"),
         "stretch": LayerStyle("33"),
         "mountain": LayerStyle("8", 1),

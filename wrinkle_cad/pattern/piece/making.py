@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-from typing import TYPE_CHECKING
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 import shapely
@@ -12,17 +13,56 @@ from wrinkle_cad.errors import Finding, InputError
 from wrinkle_cad.strip.curve import polyline
 
 from .allowance import cut_outline
+from .darts import closed_darts
 from .flat import FlatStrip, flat_strip
 from .neutral import neutral_layer
-from .options import Hand, PerSide, PieceSettings
+from .options import (
+    END_SIDE,
+    P_SIDE,
+    Q_SIDE,
+    SIDES,
+    START_SIDE,
+    Hand,
+    PerSide,
+    PieceSettings,
+)  # fmt: skip
 from .outline import sew_outline
 from .piece import Floats, Outline, PatternPiece, frozen
-from .placing import placed_notches, seam_arcs, seam_corners
+from .placing import Refusal, placed_notches, seam_arcs, seam_corners
 from .splitting import non_overlapping_runs, overlaps
 
 if TYPE_CHECKING:
     from wrinkle_cad.strip.flat.unrolling import Unrolling
     from wrinkle_cad.strip.triangulation import Triangulation
+
+
+_SAME_ARC: Final = 1e-3
+"""mm; notches nearer to each other along a rail are partners."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class StripParts:
+    """A flat strip, whole and as the parts that do not overlap themselves.
+
+    Attributes:
+        name: what its piece is called.
+        strip: the whole strip at its neutral layer.
+        parts: one, or more where it was split.
+        turned_over: whether the side that ``p' x (q - p)`` points away from is the right one.
+    """
+
+    name: str
+    strip: FlatStrip
+    parts: tuple[FlatStrip, ...]
+    turned_over: bool
+
+    @property
+    def corners(self) -> tuple[Floats, Floats]:
+        """Arc lengths in mm at which P and Q of its pieces have corners.
+
+        Two strips that share a rail pass these to each other (``NotchRule.partner_corners``).
+        """
+        return seam_corners(self.strip, self.parts)
 
 
 def make_pieces(
@@ -31,6 +71,7 @@ def make_pieces(
     *,
     name: str,
     settings: PieceSettings | None = None,
+    turned_over: bool = False,
 ) -> tuple[PatternPiece, ...]:
     """Returns the pieces of one strip: one, or more where it must be split or is wanted twice.
 
@@ -43,56 +84,119 @@ def make_pieces(
         triangulation: the strip in space; its rulings and fold angles are drawn.
         name: what the piece is called.
         settings: everything else.
+        turned_over: the side that ``p' x (q - p)`` points away from is the right one.
 
     Raises:
         InputError: the strip overlaps itself and is not to be split; a notch, hole or direction
             does not fit it; it is smaller than the tolerance.
     """
     chosen = settings or PieceSettings()
-    strip, parts = _strip_in_parts(unrolling, triangulation, name, chosen)
-    arcs = seam_arcs(strip, parts, chosen)
-    pieces: list[PatternPiece] = []
-    for count, part in enumerate(parts, start=1):
-        label = name if len(parts) == 1 else f"{name}-{count}"
-        piece = _one_piece(part.framed(), arcs, label, chosen)
-        if len(parts) > 1:
-            piece = replace(piece, findings=(_split_finding(name, len(parts)), *piece.findings))
-        pieces.extend(_both_hands(piece, chosen))
-    return tuple(pieces)
+    parts = strip_parts(
+        unrolling, triangulation, name=name, settings=chosen, turned_over=turned_over
+    )
+    return finished_pieces(draft_pieces(parts, chosen), chosen)
 
 
-def rail_corners(
+def strip_parts(
     unrolling: Unrolling,
     triangulation: Triangulation,
     *,
     name: str,
-    settings: PieceSettings | None = None,
-) -> tuple[Floats, Floats]:
-    """Returns the arc lengths in mm at which P and Q of a strip's pieces have corners.
+    settings: PieceSettings,
+    turned_over: bool = False,
+) -> StripParts:
+    """Returns the neutral layer of a strip, whole and as the parts that do not overlap.
 
-    Two strips that share a rail pass these to each other (``NotchRule.partner_corners``).
+    The arguments and errors are those of ``make_pieces``.
+    """
+    is_over = turned_over != (settings.right_side == "back")
+    strip = neutral_layer(flat_strip(unrolling, triangulation), settings, turned_over=is_over)
+    runs: tuple[tuple[int, int], ...] = ((0, len(strip.bridges) - 1),)
+    if overlaps(strip, settings.tolerance):
+        if settings.overlap == "refuse":
+            raise InputError(
+                f"The pattern of {name} overlaps itself when flat, and one flat piece must not. "
+                "Let it be split (overlap = split)."
+            )
+        runs = non_overlapping_runs(strip, tolerance=settings.tolerance)
+    return StripParts(name, strip, tuple(strip.run(*run) for run in runs), is_over)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class PieceDraft:
+    """A piece whose notches are not yet agreed on with the pieces that it is sewn to.
+
+    Attributes:
+        piece: with all notches that can stand on it.
+        refused: those that cannot.
+        turned_over: as in ``StripParts``.
+    """
+
+    piece: PatternPiece
+    refused: tuple[Refusal, ...]
+    turned_over: bool
+
+
+def draft_pieces(parts: StripParts, chosen: PieceSettings) -> tuple[PieceDraft, ...]:
+    """Returns the drafts of a strip's pieces, as seen from the side of ``p' x (q - p)``.
 
     Raises:
-        InputError: as ``make_pieces``, where the strip overlaps itself.
+        InputError: as ``make_pieces``.
     """
-    chosen = settings or PieceSettings()
-    return seam_corners(*_strip_in_parts(unrolling, triangulation, name, chosen))
+    arcs = seam_arcs(parts.strip, parts.parts, chosen)
+    drafts: list[PieceDraft] = []
+    count = len(parts.parts)
+    for number, part in enumerate(parts.parts, start=1):
+        label = parts.name if count == 1 else f"{parts.name}-{number}"
+        piece, refused = _drafted(part.framed(), arcs, label, chosen)
+        if count > 1:
+            piece = replace(piece, findings=(_split_finding(parts.name, count), *piece.findings))
+        drafts.append(PieceDraft(piece, refused, parts.turned_over))
+    return tuple(drafts)
 
 
-def _strip_in_parts(
-    unrolling: Unrolling, triangulation: Triangulation, name: str, chosen: PieceSettings
-) -> tuple[FlatStrip, list[FlatStrip]]:
-    """Returns the neutral layer of a strip, whole and as the parts that do not overlap."""
-    strip = neutral_layer(flat_strip(unrolling, triangulation), chosen.neutral_offset)
-    runs: tuple[tuple[int, int], ...] = ((0, len(strip.bridges) - 1),)
-    if overlaps(strip, chosen.tolerance):
-        if chosen.overlap == "refuse":
-            raise InputError(
-                f"pattern of {name} - it overlaps itself when flat - one flat piece must not - "
-                "let it be split (overlap: split)"
-            )
-        runs = non_overlapping_runs(strip, tolerance=chosen.tolerance)
-    return strip, [strip.run(*run) for run in runs]
+def refused_on_rails(drafts: Sequence[PieceDraft]) -> tuple[tuple[float, ...], tuple[float, ...]]:
+    """Returns the arc lengths in mm on P and on Q at which a piece of a strip can have no notch."""
+    p_refused, q_refused = (
+        tuple(refusal.arc for draft in drafts for refusal in draft.refused if refusal.side == side)
+        for side in (P_SIDE, Q_SIDE)
+    )
+    return p_refused, q_refused
+
+
+def finished_pieces(
+    drafts: Sequence[PieceDraft],
+    chosen: PieceSettings,
+    *,
+    left_out: tuple[Sequence[float], Sequence[float]] = ((), ()),
+) -> tuple[PatternPiece, ...]:
+    """Returns the pieces of one strip without the notches whose partners cannot stand.
+
+    Args:
+        drafts: of one strip.
+        chosen: whether the other foot's pieces are wanted, too.
+        left_out: arc lengths in mm on P and on Q at which the pieces sewn there have no notch.
+    """
+    pieces: list[PatternPiece] = []
+    for number, draft in enumerate(drafts):
+        # What is missing at the end of a piece is missing where the next one starts.
+        before = drafts[number - 1].refused if number else ()
+        after = drafts[number + 1].refused if number + 1 < len(drafts) else ()
+        gone = {
+            P_SIDE: left_out[0],
+            Q_SIDE: left_out[1],
+            START_SIDE: [refusal.arc for refusal in before if refusal.side == END_SIDE],
+            END_SIDE: [refusal.arc for refusal in after if refusal.side == START_SIDE],
+        }
+        kept = tuple(
+            notch
+            for notch in draft.piece.notches
+            if all(abs(notch.arc - arc) > _SAME_ARC for arc in gone[notch.side])
+        )
+        told = tuple(_refused_finding(draft.piece.name, refusal) for refusal in draft.refused)
+        piece = replace(draft.piece, notches=kept, findings=(*draft.piece.findings, *told))
+        pieces.extend(_both_hands(piece.turned_over() if draft.turned_over else piece, chosen))
+    return tuple(pieces)
 
 
 def make_piece(
@@ -111,14 +215,14 @@ def make_piece(
     pieces = make_pieces(unrolling, triangulation, name=name, settings=chosen)
     if len(pieces) > 1:
         raise InputError(
-            f"pattern of {name} - {len(pieces)} pieces wanted (hand) - one - use make_pieces"
+            f"{len(pieces)} pieces of {name} are wanted (hand), not one. Use make_pieces."
         )
     return pieces[0]
 
 
-def _one_piece(
+def _drafted(
     strip: FlatStrip, arcs: tuple[Floats, Floats], name: str, chosen: PieceSettings
-) -> PatternPiece:
+) -> tuple[PatternPiece, tuple[Refusal, ...]]:
     sew = sew_outline(strip.p_line, strip.q_line, tolerance=chosen.tolerance)
     widths = _widths(strip, chosen)
     cut, cut_outs = cut_outline(
@@ -131,7 +235,8 @@ def _one_piece(
             sew, strip.middle(), strip.flat_direction(chosen.stretch, name="stretch"), share=0.3
         )
     rulings, fold = _rulings(strip, chosen)
-    return PatternPiece(
+    notches, refused = placed_notches(strip, arcs, (sew, cut), cut_outs, widths, chosen)
+    piece = PatternPiece(
         name=name,
         size=chosen.size,
         quantity=chosen.quantity,
@@ -141,7 +246,7 @@ def _one_piece(
         sew=sew,
         cut_outs=cut_outs,
         widths=widths,
-        notches=placed_notches(strip, arcs, cut, widths, chosen),
+        notches=notches,
         grain_line=_line_inside(sew, strip.middle(), grain, share=0.7),
         stretch_line=stretch,
         rulings=rulings,
@@ -149,8 +254,12 @@ def _one_piece(
         drill_holes=_drill_holes(strip, cut, chosen, name),
         p_span=(float(strip.p_arc[0]), float(strip.p_arc[-1])),
         q_span=(float(strip.q_arc[0]), float(strip.q_arc[-1])),
-        findings=_allowance_findings(name, cut_outs),
+        findings=(
+            *_allowance_findings(name, cut_outs),
+            *_dart_findings(name, sew, cut, widths, chosen.tolerance),
+        ),
     )
+    return piece, refused
 
 
 def _widths(strip: FlatStrip, chosen: PieceSettings) -> PerSide:
@@ -204,7 +313,8 @@ def _drill_holes(strip: FlatStrip, cut: Outline, chosen: PieceSettings, name: st
     region = shapely.Polygon(cut.points)
     for i in np.flatnonzero(~shapely.contains_xy(region, holes)):
         raise InputError(
-            f"drill hole {tuple(shares[i])} of {name} - outside the flat piece - inside - move it"
+            f"The drill hole {tuple(shares[i].tolist())} of {name} lies outside the flat piece. "
+            "Move it inside."
         )
     return frozen(holes)
 
@@ -224,19 +334,40 @@ def _split_finding(name: str, count: int) -> Finding:
     return Finding(
         "pattern-split",
         "warning",
-        f"pattern of {name} - overlapped itself when flat - split at bridges into {count} pieces "
-        "- sew the cuts together at their notches first",
+        f"The pattern of {name} overlapped itself when flat and was split at bridges into {count} "
+        "pieces. Sew the cuts together at their notches first.",
     )
 
 
-def _allowance_findings(name: str, cut_outs: tuple[Floats, ...]) -> tuple[Finding, ...]:
-    if not cut_outs:
-        return ()
-    return (
-        Finding(
+def _allowance_findings(name: str, cut_outs: tuple[Floats, ...]) -> Iterator[Finding]:
+    if cut_outs:
+        yield Finding(
             "allowance-encloses",
             "warning",
-            f"seam allowance of {name} - runs into itself around {len(cut_outs)} openings - edges "
-            "stay joined there - make it narrower or split the strip",
-        ),
+            f"The seam allowance of {name} runs into itself around {len(cut_outs)} openings, so "
+            "edges stay joined there. Make it narrower or split the strip.",
+        )
+
+
+def _dart_findings(
+    name: str, sew: Outline, cut: Outline, widths: PerSide, tolerance: float
+) -> Iterator[Finding]:
+    if not any(widths):
+        return
+    for point, mouth in closed_darts(sew, cut, tolerance):
+        yield Finding(
+            "dart-closed",
+            "warning",
+            f"A dart of {name} with its point at ({point[0]:.1f}, {point[1]:.1f}) mm is "
+            f"{mouth:.3g} mm wide, narrower than the allowances of its edges, so it is not cut. "
+            "Make the allowance there less than half as wide, or cut the dart by hand.",
+        )
+
+
+def _refused_finding(name: str, refusal: Refusal) -> Finding:
+    return Finding(
+        "notch-left-out",
+        "warning",
+        f"The notches at {refusal.arc:.4g} mm of {SIDES[refusal.side]} of {name} were left out on "
+        f"both edges sewn there: {refusal.reason}. Move them, or make the allowance narrower.",
     )

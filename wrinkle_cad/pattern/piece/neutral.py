@@ -5,6 +5,9 @@ and of a part of a cylinder of radius d around every bridge (Steiner's parallel 
 the facets keep their shape and every bridge with fold angle theta opens by a parallel gap of width
 d * theta, across the bridge: wider for a mountain when the layer lies on the right side, narrower
 (negative) when it lies below. On a cylinder of radius R that makes (R + d) times the angle.
+
+In a bend the neutral layer lies at K thicknesses from the inner face, which is the lower one of a
+mountain and the upper one of a valley: d depends on the sign of theta.
 """
 
 from __future__ import annotations
@@ -14,11 +17,14 @@ from dataclasses import replace
 import numpy as np
 
 from .flat import FlatStrip, Indices
+from .options import PieceSettings
 from .piece import Floats, frozen
 
 
-def neutral_layer(strip: FlatStrip, offset: float) -> FlatStrip:
-    """Returns the flat strip with the lengths that it has ``offset`` mm above its surface.
+def neutral_layer(
+    strip: FlatStrip, chosen: PieceSettings, *, turned_over: bool = False
+) -> FlatStrip:
+    """Returns the flat strip with the lengths that it has at the material's neutral layer.
 
     A rail's sample at the middle of a fold takes half of it; where several bridges meet at a
     sample it takes their mean, so a rail stays one line without steps. Arc lengths stay those of
@@ -29,19 +35,25 @@ def neutral_layer(strip: FlatStrip, offset: float) -> FlatStrip:
 
     Args:
         strip: the flat surface.
-        offset: mm along the surface normal (positive: towards the right side).
+        chosen: thickness, K-factor and on which side of the surface the material lies.
+        turned_over: whether the right side is the one that the surface normal points away from.
     """
-    if offset == 0.0:
+
+    def opening(fold: Floats) -> Floats:
+        gaps: Floats = chosen.neutral_offsets(fold, turned_over=turned_over) * fold
+        return gaps
+
+    if not np.any(opening(strip.fold)):
         return strip
     ends = strip.bridges
     span = strip.q[ends[:, 1]] - strip.p[ends[:, 0]]
     length = np.hypot(span[:, 0], span[:, 1])
     forward = np.column_stack((span[:, 1], -span[:, 0])) / np.where(length > 0, length, 1)[:, None]
-    gap = offset * strip.fold[:, None] * forward
+    gap = opening(strip.fold)[:, None] * forward
     shift = np.cumsum(gap, axis=0) - 0.5 * gap
-    at_start, at_end = _end_bends(strip)
-    shift[1:] += offset * at_start * _first_direction(forward)
-    shift[-1] += offset * at_end * _first_direction(forward[::-1])
+    at_start, at_end = opening(np.array(_end_bends(strip)))
+    shift[1:] += at_start * _first_direction(forward)
+    shift[-1] += at_end * _first_direction(forward[::-1])
     p_shift = _mean_shift(shift, ends[:, 0])
     q_shift = _mean_shift(shift, ends[:, 1])
     return replace(

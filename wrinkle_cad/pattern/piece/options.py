@@ -5,6 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import ClassVar, Final, Literal
 
+import numpy as np
+import numpy.typing as npt
+
 from wrinkle_cad import settings
 from wrinkle_cad.errors import InputError
 from wrinkle_cad.options.checking import check_options
@@ -14,12 +17,14 @@ SIDES: Final = ("P", "Q", "start", "end")
 """The sides of a strip in the order of every per-side option."""
 P_SIDE, Q_SIDE, START_SIDE, END_SIDE = range(4)
 
+Floats = npt.NDArray[np.float64]
 PerSide = tuple[float, float, float, float]
 Direction = Literal["along", "across"] | tuple[float, float, float]
 NotchKind = Literal["slit", "v", "t", "castle", "check", "u"]
 SurfaceSide = Literal["inside", "middle", "outside"]
 Overlap = Literal["split", "refuse"]
 Hand = Literal["left", "right"]
+RightSide = Literal["front", "back"]
 
 _LONGEST: Final = 1e6
 """mm; a kilometer: no length of a pattern is larger."""
@@ -128,7 +133,7 @@ class PieceOptions:
     thickness: float | None = field(
         default=None,
         metadata=option(
-            "of the material: lengths are taken at its middle, the neutral layer",
+            "of the material: lengths are taken at its neutral layer",
             unit="mm",
             least=0.0,
             most=1000.0,
@@ -138,8 +143,25 @@ class PieceOptions:
     surface_side: SurfaceSide = field(
         default="middle",
         metadata=option(
-            "the side of the material that the surface is; inside: the material lies where the"
-            " surface normal points"
+            "the side of the material that the surface is; inside: the material lies on its right"
+            " side"
+        ),
+    )
+    k_factor: float | None = field(
+        default=None,
+        metadata=option(
+            "where the neutral layer lies in a bend, as a share of the thickness from its inner"
+            " face",
+            above=0.0,
+            below=1.0,
+            when_none="the material's, or 0.5",
+        ),
+    )
+    right_side: RightSide = field(
+        default="front",
+        metadata=option(
+            "the strip's side that is the pattern's right one; front: the upper's outside, or"
+            " where p' x (q - p) points without an upper"
         ),
     )
     grain: Direction = field(
@@ -244,11 +266,22 @@ class PieceSettings(PieceOptions):
         )
         return first, second, third, fourth
 
-    @property
-    def neutral_offset(self) -> float:
-        """Mm from the surface to the neutral layer, along the surface normal (right side)."""
-        share = {"inside": 0.5, "middle": 0.0, "outside": -0.5}[self.surface_side]
-        return share * (self.thickness or 0.0)
+    def neutral_offsets(self, fold: Floats, *, turned_over: bool) -> Floats:
+        """Returns how far the neutral layer lies above the surface at bends, (k,) mm.
+
+        A bend's inner face, from which ``k_factor`` counts, is told by the sign of its fold.
+
+        Args:
+            fold: (k,) rad, positive where the surface is convex as seen along ``p' x (q - p)``.
+            turned_over: whether the right side is the one that this normal points away from.
+        """
+        lowest = {"inside": 0.0, "middle": -0.5, "outside": -1.0}[self.surface_side]
+        if turned_over:
+            lowest = -lowest - 1.0
+        k_factor = 0.5 if self.k_factor is None else self.k_factor
+        share = np.where(fold > 0.0, k_factor, 1.0 - k_factor)
+        offsets: Floats = (self.thickness or 0.0) * (lowest + share)
+        return offsets
 
 
 @dataclass(frozen=True)

@@ -1,12 +1,14 @@
 """PatternPiece: one flat piece of material with everything that is cut into or drawn on it.
 
-Frame: millimetres, x along the strip, y across, right side up: P below, Q above, and the first
-point of P at the origin. A mirrored piece (the other foot) has Q below and says so.
+Frame: millimetres, x along the strip, y across, right side up, the first point of P at the origin.
+Seen from the side of ``p' x (q - p)`` P lies below and Q above. Where the other side is the right
+one (the upper's outside decides), or for the other foot, Q lies below and ``is_mirrored`` says so.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from typing import Final
 
 import numpy as np
 import numpy.typing as npt
@@ -14,6 +16,9 @@ import numpy.typing as npt
 from wrinkle_cad.errors import Finding
 
 from .options import Hand, NotchKind, PerSide
+
+RIGHT_SIDE: Final = "RIGHT SIDE UP"
+"""Stands on every piece: patterns are drawn as seen from the right side of the material."""
 
 Floats = npt.NDArray[np.float64]
 Ints = npt.NDArray[np.int8]
@@ -32,6 +37,7 @@ class Notch:
         position: (2,) mm, on the cut line.
         direction: (2,) unit vector from the cut line into the piece.
         depth, width: mm. ``kind``: its form.
+        is_cut: False where there is no allowance to cut into: it is then drawn as a mark.
     """
 
     side: int
@@ -42,6 +48,7 @@ class Notch:
     depth: float
     width: float
     kind: NotchKind
+    is_cut: bool = True
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -74,7 +81,8 @@ class PatternPiece:
             seen from the right side, negative for a valley.
         drill_holes: (h, 2) centres.
         p_span, q_span: (first, last) mm along the rails in space that this piece covers.
-        hand: the foot it is for. ``is_mirrored``: made by mirroring the strip.
+        hand: the foot it is for.
+        is_mirrored: Q lies below P, as the strip was mirrored or its other side is the right one.
         findings: what was noticed while making it.
     """
 
@@ -117,7 +125,7 @@ class PatternPiece:
     @property
     def texts(self) -> tuple[str, ...]:
         """What is written on the piece, line by line."""
-        lines = [self.name, f"SIZE {self.size}".strip(), f"QUANTITY {self.quantity}"]
+        lines = [self.name, f"SIZE {self.size}".strip(), f"QUANTITY {self.quantity}", RIGHT_SIDE]
         if self.material:
             lines.append(f"MATERIAL {self.material}")
         lines.append(f"UNITS MM, CHORD TOLERANCE {self.tolerance:g} MM")
@@ -127,21 +135,19 @@ class PatternPiece:
         """Returns the piece shifted by ``offset``: (2,) mm."""
         return _mapped(self, np.array([1.0, 1.0]), offset)
 
+    def turned_over(self) -> PatternPiece:
+        """Returns the same piece as seen from its other side, which becomes the right one.
+
+        y is turned over, outlines stay counter-clockwise, mountains become valleys.
+        """
+        return replace(_mirrored(self), ruling_fold=frozen(-self.ruling_fold))
+
     def mirrored(self, *, name: str, hand: Hand) -> PatternPiece:
         """Returns the piece for the other foot: y turned over, outlines kept counter-clockwise.
 
         Mountains stay mountains: the strip for the other foot is mirrored in space as well.
         """
-        turned = _mapped(self, np.array([1.0, -1.0]), np.zeros(2))
-        return replace(
-            turned,
-            name=name,
-            hand=hand,
-            cut=_reversed(turned.cut),
-            sew=_reversed(turned.sew),
-            cut_outs=tuple(frozen(outline[::-1]) for outline in turned.cut_outs),
-            is_mirrored=not self.is_mirrored,
-        )
+        return replace(_mirrored(self), name=name, hand=hand)
 
 
 def frozen(points: npt.ArrayLike) -> Floats:
@@ -163,6 +169,17 @@ def make_outline(points: npt.ArrayLike, sides: npt.ArrayLike, corners: npt.Array
 def _reversed(outline: Outline) -> Outline:
     return make_outline(
         outline.points[::-1], np.roll(outline.sides[::-1], -1), outline.corners[::-1]
+    )
+
+
+def _mirrored(piece: PatternPiece) -> PatternPiece:
+    turned = _mapped(piece, np.array([1.0, -1.0]), np.zeros(2))
+    return replace(
+        turned,
+        cut=_reversed(turned.cut),
+        sew=_reversed(turned.sew),
+        cut_outs=tuple(frozen(outline[::-1]) for outline in turned.cut_outs),
+        is_mirrored=not piece.is_mirrored,
     )
 
 

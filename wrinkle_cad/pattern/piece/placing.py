@@ -1,18 +1,40 @@
-"""Notches on a piece: from arc lengths on the rails to marks on the cut line."""
+"""Notches on a piece: from arc lengths on the rails to marks on the cut line, or a reason why not.
+
+A notch stands where the seam point's normal meets the cut line within the mitre's reach. Where the
+allowance is trimmed, that may lie on another side or far away; the notch is then refused, and its
+partner with it. Slits keep apart from each other and from the corners of the cut line.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Final
 
 import numpy as np
 import shapely
 
-from wrinkle_cad import settings as defaults
-
 from .flat import FlatStrip
+from .notch_forms import notch_lines
 from .notches import corner_arcs, notch_arcs, points_at
 from .options import END_SIDE, P_SIDE, Q_SIDE, START_SIDE, NotchRule, PerSide, PieceSettings
 from .piece import Floats, Notch, Outline, frozen
+
+_DEPTH_PER_ALLOWANCE: Final = 0.6
+"""A notch never eats more than this share of the seam allowance."""
+_APART: Final = 0.5
+"""mm; least distance of a notch from the next one and from a corner of the cut line."""
+_TRIMMED: Final = 0.5
+"""A notch is refused where less than this share of the allowance is left."""
+
+
+@dataclass(frozen=True, slots=True)
+class Refusal:
+    """A notch that cannot stand: side index, mm along it, and what is in its way."""
+
+    side: int
+    arc: float
+    reason: str
 
 
 def seam_arcs(
@@ -45,99 +67,170 @@ def _rail_arcs(length: float, corners: Floats, rule: NotchRule) -> Floats:
     return notch_arcs(length, rule, corners=[*corners.tolist(), *rule.partner_corners])
 
 
+@dataclass(frozen=True, slots=True, eq=False)
+class _Ground:
+    """What a notch stands on: the piece's outlines, ready to be asked."""
+
+    rings: shapely.MultiLineString
+    sew: shapely.Polygon
+    corners: shapely.MultiPoint
+    widths: PerSide
+
+
 def placed_notches(
     strip: FlatStrip,
     arcs: tuple[Floats, Floats],
-    cut: Outline,
+    outlines: tuple[Outline, Outline],
+    cut_outs: Sequence[Floats],
     widths: PerSide,
     chosen: PieceSettings,
-) -> tuple[Notch, ...]:
-    """Returns the notches of one piece, sorted by side, then by arc.
+) -> tuple[tuple[Notch, ...], tuple[Refusal, ...]]:
+    """Returns the notches of one piece, sorted by side, then by arc, and those that cannot stand.
 
     Args:
         strip: the piece's part of the strip, in the piece's frame.
         arcs: of the notches on the whole rails P and Q; those off this part are left out.
-        cut: its cut line.
+        outlines: its sew line and its cut line.
+        cut_outs: (k, 2) mm each, what its allowance encloses.
         widths: mm, its allowances in the order of ``SIDES``.
         chosen: form and depth of a notch.
     """
-    ring = shapely.LinearRing(cut.points)
+    sew, cut = outlines
+    ground = _Ground(
+        shapely.MultiLineString([np.vstack((ring, ring[:1])) for ring in (cut.points, *cut_outs)]),
+        shapely.Polygon(sew.points),
+        shapely.MultiPoint(cut.points[cut.corners]),
+        widths,
+    )
+    shapely.prepare(ground.sew)
     notches: list[Notch] = []
+    refused: list[Refusal] = []
+    for side, line, rail_arcs, at in _seams(strip, arcs):
+        feet, along = points_at(line, rail_arcs, at)
+        # P and the end are walked with the piece on the left, Q and the start on the right.
+        turn = 1.0 if side in (P_SIDE, END_SIDE) else -1.0
+        outward = turn * np.column_stack((along[:, 1], -along[:, 0]))
+        for arc, foot, out in zip(at.tolist(), feet, outward, strict=True):
+            made = _notch(side, arc, foot, out, ground, chosen)
+            if isinstance(made, Notch):
+                notches.append(made)
+            else:
+                refused.append(Refusal(side, arc, made))
+    kept, crossing = _apart(notches)
+    return tuple(kept), (*refused, *crossing)
+
+
+def _seams(
+    strip: FlatStrip, arcs: tuple[Floats, Floats]
+) -> list[tuple[int, Floats, Floats, Floats]]:
+    """Returns (side, line, arc lengths of its points, arcs of notches) of the sides with notches.
+
+    A ruling at which a longer strip was cut apart has two notches.
+    """
+    seams = []
     for side, line, rail_arcs, at in (
         (P_SIDE, strip.p_line, strip.p_arc, arcs[0]),
         (Q_SIDE, strip.q_line, strip.q_arc, arcs[1]),
     ):
-        here = at[(at > rail_arcs[0]) & (at < rail_arcs[-1])]
-        notches += _on_line(side, line, rail_arcs, here, ring, widths[side], chosen)
+        seams.append((side, line, rail_arcs, at[(at > rail_arcs[0]) & (at < rail_arcs[-1])]))
     for side, is_cut, i in (
         (START_SIDE, strip.starts_at_cut, 0),
         (END_SIDE, strip.ends_at_cut, -1),
     ):
-        line = np.vstack((strip.p_line[i], strip.q_line[i]))
-        length = float(np.hypot(*(line[1] - line[0])))
         if is_cut:
+            line = np.vstack((strip.p_line[i], strip.q_line[i]))
+            length = float(np.hypot(*(line[1] - line[0])))
             at = notch_arcs(length, NotchRule(count=2))
-            rail_arcs = np.array([0.0, length])
-            notches += _on_line(side, line, rail_arcs, at, ring, widths[side], chosen)
-    return tuple(notches)
+            seams.append((side, line, np.array([0.0, length]), at))
+    return seams
 
 
-def _on_line(
-    side: int,
-    line: Floats,
-    arcs: Floats,
-    at: Floats,
-    ring: shapely.LinearRing,
-    width: float,
-    chosen: PieceSettings,
-) -> list[Notch]:
-    if not len(at):
-        return []
-    feet, along = points_at(line, arcs, at)
-    # P and the end are walked with the piece on the left, Q and the start with it on the right.
-    turn = 1.0 if side in (P_SIDE, END_SIDE) else -1.0
-    outward = turn * np.column_stack((along[:, 1], -along[:, 0]))
-    notches = []
-    for arc, foot, out in zip(at, feet, outward, strict=True):
-        position = _on_ring(ring, foot, out, width, chosen.tolerance)
-        room = _room(ring, position, -out)
-        depth = min(chosen.notch_depth, 0.25 * room)
-        if width > 0.0:
-            depth = min(depth, defaults.NOTCH_DEPTH_PER_ALLOWANCE * width)
-        notches.append(
-            Notch(
-                side=side,
-                arc=float(arc),
-                seam=frozen(foot),
-                position=frozen(position),
-                direction=frozen(-out),
-                depth=depth,
-                width=min(chosen.notch_width, 2.0 * depth),
-                kind=chosen.notch_kind,
-            )
-        )
-    return notches
+def _notch(
+    side: int, arc: float, foot: Floats, out: Floats, ground: _Ground, chosen: PieceSettings
+) -> Notch | str:
+    """Returns the notch of a seam point, or why there can be none."""
+    width = ground.widths[side]
+    reach = chosen.mitre_limit * width
+    position = _on_cut_line(foot, out, width, reach, ground, chosen.tolerance)
+    if isinstance(position, str):
+        return position
+    left = float(np.hypot(*(position - foot)))
+    is_cut = width > 0.0
+    if left < _TRIMMED * width:
+        return f"only {left:.2g} of {width:g} mm of its allowance are left"
+    depth = min(chosen.notch_depth, 0.25 * _room(ground.rings, position, -out))
+    if is_cut:
+        depth = min(depth, _DEPTH_PER_ALLOWANCE * min(width, left))
+    notch = Notch(
+        side=side,
+        arc=arc,
+        seam=frozen(foot),
+        position=frozen(position),
+        direction=frozen(-out),
+        depth=depth,
+        width=min(chosen.notch_width, 2.0 * depth),
+        kind=chosen.notch_kind,
+        is_cut=is_cut,
+    )
+    corner = float(_shape(notch).distance(ground.corners))
+    if corner < _APART:
+        return f"it would stand {corner:.2g} mm from a corner of the cut line"
+    return notch
 
 
-def _on_ring(
-    ring: shapely.LinearRing, foot: Floats, out: Floats, width: float, tolerance: float
-) -> Floats:
-    """Returns where the cut line lies straight out from a foot on the sew line."""
+def _on_cut_line(
+    foot: Floats, out: Floats, width: float, reach: float, ground: _Ground, tolerance: float
+) -> Floats | str:
+    """Returns where the cut line lies straight out from a foot on the sew line, or why nowhere."""
+    rings = ground.rings
     expected = foot + width * out
-    if ring.distance(shapely.Point(expected)) > tolerance:
+    if rings.distance(shapely.Point(expected)) > tolerance:
         # Trimmed or mitred here: the first crossing of the cut line on the way out.
-        ray = shapely.LineString((foot, foot + 100.0 * max(width, tolerance) * out))
-        crossing = shapely.intersection(ring, ray)
-        if not crossing.is_empty:
-            reach = shapely.distance(shapely.Point(foot), shapely.get_parts(crossing))
-            expected = foot + float(reach.min()) * out
-    snapped = ring.interpolate(ring.project(shapely.Point(expected)))
-    return np.array(snapped.coords[0])
+        ray = shapely.LineString((foot, foot + max(reach, tolerance) * out))
+        crossing = shapely.intersection(rings, ray)
+        if crossing.is_empty:
+            far = float(np.hypot(*np.subtract(rings.bounds[2:], rings.bounds[:2])))
+            long_ray = shapely.LineString((foot, foot + far * out))
+            met = shapely.intersection(rings, long_ray)
+            away = shapely.distance(shapely.Point(foot), shapely.get_parts(met))
+            return (
+                f"straight out, the cut line is {float(away.min()):.3g} mm away; at most "
+                f"{reach:g} mm are allowed"
+            )
+        distances = shapely.distance(shapely.Point(foot), shapely.get_parts(crossing))
+        expected = foot + float(distances.min()) * out
+    snapped = np.array(shapely.shortest_line(rings, shapely.Point(expected)).coords[0])
+    way = shapely.LineString((foot, snapped))
+    # The flat sew line is cleaned within the tolerance, so a foot may lie that far inside.
+    if shapely.intersection(way, ground.sew).length > 2.0 * tolerance:
+        return "the way to its cut line leads through the piece itself"
+    return snapped
 
 
-def _room(ring: shapely.LinearRing, position: Floats, inward: Floats) -> float:
+def _room(rings: shapely.MultiLineString, position: Floats, inward: Floats) -> float:
     """Returns the way in mm from the cut line straight to the other side of the piece."""
-    far = float(np.hypot(*np.subtract(ring.bounds[2:], ring.bounds[:2])))
+    far = float(np.hypot(*np.subtract(rings.bounds[2:], rings.bounds[:2])))
     ray = shapely.LineString((position + 1e-6 * far * inward, position + far * inward))
-    crossing = shapely.intersection(ring, ray)
+    crossing = shapely.intersection(rings, ray)
     return far if crossing.is_empty else float(crossing.distance(shapely.Point(position)))
+
+
+def _shape(notch: Notch) -> shapely.MultiLineString:
+    return shapely.MultiLineString(notch_lines(notch))
+
+
+def _apart(notches: Sequence[Notch]) -> tuple[list[Notch], list[Refusal]]:
+    """Returns the notches that keep apart from all before them, and the others."""
+    kept: list[Notch] = []
+    shapes: list[shapely.Geometry] = []
+    refused = []
+    for notch in notches:
+        shape = _shape(notch)
+        nearest = min((float(shape.distance(other)) for other in shapes), default=np.inf)
+        if nearest < _APART:
+            reason = f"it would stand {nearest:.2g} mm from another notch"
+            refused.append(Refusal(notch.side, notch.arc, reason))
+        else:
+            kept.append(notch)
+            shapes.append(shape)
+    return kept, refused
