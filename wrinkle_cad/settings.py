@@ -199,6 +199,12 @@ RAIL_LENGTH_MIN: Final = 1e-6
 RAILS_APART_PER_LENGTH: Final = 1e-6
 """Rails that lie nearer to one another than this share of their length are the same curve."""
 
+COMMON_END_PER_LENGTH: Final = 0.02
+"""Rails that meet at an end may run together from there for this share of the shorter one."""
+
+CROSSING_COSINE: Final = 0.9999
+"""Rails whose directions are nearer to parallel than this touch rather than cross."""
+
 FILE_SIZE_LIMIT: Final = 256 * 2**20
 """Bytes; the largest file, packed or unpacked, that is handed to the CAD kernel."""
 

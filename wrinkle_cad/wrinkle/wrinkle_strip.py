@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from wrinkle_cad import settings
+from wrinkle_cad.cad.rail.apart import check_apart
 from wrinkle_cad.cad.rail.directrix import check_distinct, make_directrix, orient_alike
 from wrinkle_cad.cad.rail.joint_samples import sample_rails
 from wrinkle_cad.errors import Finding
@@ -67,6 +68,7 @@ class WrinkleStrip(TriangulatedStrip):
         check_distinct(given_p, given_q)
         p_rail, q_rail, was_turned = orient_alike(given_p, given_q)
         p_samples, q_samples = sample_rails(p_rail, q_rail, chosen.tolerance, chosen.max_chord)
+        check_apart(p_rail, q_rail, p_samples, q_samples)
         triangulation = triangulate(
             p_samples.points,
             q_samples.points,

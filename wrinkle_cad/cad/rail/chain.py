@@ -23,6 +23,7 @@ from wrinkle_cad.cad.kernel.evaluation import PoleCurve
 from wrinkle_cad.cad.kernel.splines import curve_arrays
 from wrinkle_cad.cad.kernel.topology import as_edge, as_wire, edges_of, kind_name
 from wrinkle_cad.errors import InputError
+from wrinkle_cad.strip.places import place_text
 from wrinkle_cad.strip.portable import norm
 
 Floats = NDArray[np.float64]
@@ -46,6 +47,7 @@ def chain_of(source: object, name: str) -> list[PoleCurve]:
     curves = [curve for curve in curves if _size(curve) > settings.CONFUSION] or curves
     if not curves:
         raise InputError(f"{name} - no curve in it - at least one edge is needed - pass a curve")
+    _check_once(curves, name)
     for curve in curves:
         if not np.isfinite(curve.poles).all():
             raise InputError(f"{name} - a curve with NaN or infinite poles - pass finite geometry")
@@ -104,6 +106,22 @@ def _curve_of(edge: TopoDS_Edge) -> PoleCurve:
     curve = edge_curve(edge)
     poles, weights, knots, multiplicities = curve_arrays(curve)
     return PoleCurve(curve.Degree(), knots, multiplicities, poles, weights)
+
+
+def _check_once(curves: Sequence[PoleCurve], name: str) -> None:
+    """Checks that no edge occurs twice, as the seam does in the outer wire of a cone."""
+    seen: dict[bytes, int] = {}
+    for i, curve in enumerate(curves):
+        poles = np.round(curve.poles, 9) + 0.0
+        keys = {rows.tobytes() for rows in (poles, poles[::-1])}
+        if any(key in seen for key in keys):
+            size = _size(curve)
+            start, end = (place_text(at, size) for at in curve.poles[[0, -1]])
+            raise InputError(
+                f"{name} runs twice over one edge, from {start} to {end}. A rail passes every place"
+                " once: choose its edges one by one, or leave that edge out."
+            )
+        seen |= dict.fromkeys(keys, i)
 
 
 def _size(curve: PoleCurve) -> float:
