@@ -50,6 +50,18 @@ CROSSING_PER_SIZE: Final = 4e-3
 """A strip passes through itself along more than a typical sagitta, or than this share of its size:
 rails of points may have any sagitta."""
 
+CREASE_DEG: Final = 5.0
+"""A crease of so many degrees is called one."""
+
+STRETCH_PERCENT: Final = 0.1
+"""A sheet that must give more is called stretched: half of the 0.2 at which sheet metal yields."""
+
+FOLDED_BACK_DEG: Final = 179.0
+"""A fold at a bridge by so much lays the strip upon itself."""
+
+K_FACTOR: Final = 0.5
+"""Where a material's neutral layer lies when nothing is known: in the middle."""
+
 TWIST_PER_DEFECT: Final = 0.5
 """A gap is twist, not the end of a fan, if the surface turns by more than this share of the angle
 between the rails' tangents."""

@@ -59,3 +59,5 @@ class StripArguments(StripSettings):
     q: object
     name: str = field(default=settings.STRIP_NAME, kw_only=True)
     color: tuple[float, float, float] = field(default=settings.STRIP_COLOR, kw_only=True)
+    thickness: float = field(default=0.0, kw_only=True)
+    k_factor: float = field(default=settings.K_FACTOR, kw_only=True)

@@ -9,12 +9,17 @@ from typing import Any, Literal
 
 import numpy as np
 
-from wrinkle_cad.strip.bend_radius import smallest_bend_radius
+from wrinkle_cad import settings
+from wrinkle_cad.strip.crossings import self_crossings
 from wrinkle_cad.strip.flat.unrolling import Unrolling
 from wrinkle_cad.strip.gaps import Gap, covered_lengths, gap_entry
+from wrinkle_cad.strip.rulings.surface import RuledStrip, inner_bend_radius
 from wrinkle_cad.strip.triangulation import Triangulation
 
 Role = Literal["strip", "band"]
+State = Literal["folded", "creased", "stretched", "developable"]
+"""What a strip is, the first that applies: folded back or through itself, creased by
+``settings.CREASE_DEG`` or more, stretched by more than ``settings.STRETCH_PERCENT``, or none."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -27,6 +32,20 @@ class SeamLength:
     """Along the flat pattern's sew line."""
 
 
+@dataclass(frozen=True, slots=True)
+class CreaseReport:
+    """One ruling at which the surface is folded."""
+
+    angle_deg: float
+    """By how much."""
+    p_mm: float
+    """Along rail P from its start."""
+    q_mm: float
+    """Along rail Q from its start."""
+    cause: Literal["corner", "strip"]
+    """A corner of a rail, or the strip's own."""
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class StripReport:
     """What a strip is, in numbers; bridges are counted between the first and the last."""
@@ -35,6 +54,26 @@ class StripReport:
     """The strip's name."""
     role: Role
     """``strip``, or ``band`` between a strip and the body."""
+    closed: bool
+    """Whether the strip's last bridge is its first one again."""
+    state: State
+    """Folded, creased, stretched or developable."""
+    developable_share: float
+    """Share, 0 to 1, of both rails under torsal pieces, cones and planes."""
+    max_strain_percent: float
+    """What a flat sheet must give at most to take the strip's shape."""
+    p95_strain_percent: float
+    """What it must give on all but a twentieth of the strip's length."""
+    stretched_mm: float
+    """Length along the middle of the strip that is stretched."""
+    creases: tuple[CreaseReport, ...]
+    """Rulings at which the surface is folded, in order along the strip."""
+    smallest_bend_radius_mm: float
+    """Of the surface at its sharpest place; 0 at a crease, infinite when flat."""
+    inner_bend_radius_mm: float
+    """The same at the inner face of the material."""
+    max_twist_deg: float
+    """Largest turn of the tangent plane along a ruling."""
     samples_p: int
     """Samples of directrix P."""
     samples_q: int
@@ -61,10 +100,6 @@ class StripReport:
     """Area of the flat pattern."""
     max_fold_deg: float
     """Largest fold angle at a bridge."""
-    max_twist_deg: float
-    """Largest turn of the normal along a ruling."""
-    smallest_bend_radius_mm: float
-    """How sharply the surface is bent at its sharpest place; infinite where it is flat."""
     seam_lengths_mm: dict[str, SeamLength]
     """Seam lengths by rail, ``p`` and ``q``."""
     overlaps: bool
@@ -74,21 +109,23 @@ class StripReport:
 
     @property
     def is_developable(self) -> bool:
-        """Whether every interior bridge is locally convex, inflections apart."""
-        return self.invalid_bridges == self.inflection_bridges
+        """Whether a flat sheet takes the strip's shape without a crease and hardly giving."""
+        return self.state == "developable"
 
     def as_json(self) -> dict[str, Any]:
         """The report as plain values, as it stands in NAME.json."""
         entry = {field.name: getattr(self, field.name) for field in fields(self)}
         seams = {rail: asdict(seam) for rail, seam in self.seam_lengths_mm.items()}
         gaps = [gap_entry(gap) for gap in self.gaps]
-        return {**entry, "seam_lengths_mm": seams, "gaps": gaps}
+        creases = [asdict(crease) for crease in self.creases]
+        return {**entry, "seam_lengths_mm": seams, "gaps": gaps, "creases": creases}
 
 
 def report_on(
     name: str,
     triangulation: Triangulation,
     unrolling: Unrolling,
+    ruled: RuledStrip,
     *,
     role: Role,
     area_mm2: float,
@@ -97,6 +134,7 @@ def report_on(
     least_bending: float,
     gaps: Sequence[Gap],
     thickness_mm: float = 0.0,
+    k_factor: float = settings.K_FACTOR,
 ) -> StripReport:
     """Collects the numbers of one strip.
 
@@ -104,21 +142,36 @@ def report_on(
         name: the strip's name.
         triangulation: of the strip.
         unrolling: of the same triangulation.
+        ruled: the exact surface near it.
         role: of the strip.
         area_mm2: of the surface in space.
         face_count: of the same surface.
         lengths_mm: of the directrices P and Q in space.
         least_bending: energy of the least-bending triangulation of the same rails.
         gaps: the runs of invalid bridges.
-        thickness_mm: of the material; bends finer than it count as one.
+        thickness_mm: of the material.
+        k_factor: where its neutral layer lies, in shares of the thickness from the inner face.
     """
-    fold, twist = triangulation.fold, triangulation.twist
+    radius = ruled.smallest_bend_radius(math.radians(settings.CREASE_DEG))
     failed = ~triangulation.valid & ~triangulation.inflection
     failed[[0, -1]] = False
     p_invalid, q_invalid = covered_lengths(triangulation, failed)
     return StripReport(
         name=name,
         role=role,
+        closed=triangulation.is_closed,
+        state=_state(triangulation, ruled),
+        developable_share=ruled.developable_share,
+        max_strain_percent=100.0 * ruled.strain.largest,
+        p95_strain_percent=100.0 * ruled.strain.percentile(0.95),
+        stretched_mm=ruled.strain.length_above(settings.STRETCH_PERCENT / 100.0),
+        creases=tuple(
+            CreaseReport(math.degrees(crease.angle), crease.p_arc, crease.q_arc, crease.cause)
+            for crease in ruled.creases
+        ),
+        smallest_bend_radius_mm=radius,
+        inner_bend_radius_mm=inner_bend_radius(radius, thickness_mm, k_factor),
+        max_twist_deg=math.degrees(ruled.largest_twist),
         samples_p=len(triangulation.p),
         samples_q=len(triangulation.q),
         interior_bridges=triangulation.interior_count,
@@ -131,9 +184,7 @@ def report_on(
         least_bending=least_bending,
         area_3d_mm2=area_mm2,
         area_pattern_mm2=unrolling.area,
-        max_fold_deg=math.degrees(float(np.abs(fold).max(initial=0.0))),
-        max_twist_deg=math.degrees(float(np.abs(twist).max(initial=0.0))),
-        smallest_bend_radius_mm=smallest_bend_radius(triangulation, thickness=thickness_mm),
+        max_fold_deg=_largest_fold_deg(triangulation),
         seam_lengths_mm={
             "p": SeamLength(lengths_mm[0], unrolling.p_length),
             "q": SeamLength(lengths_mm[1], unrolling.q_length),
@@ -141,3 +192,18 @@ def report_on(
         overlaps=unrolling.overlaps,
         gaps=tuple(gaps),
     )
+
+
+def _state(triangulation: Triangulation, ruled: RuledStrip) -> State:
+    if _largest_fold_deg(triangulation) >= settings.FOLDED_BACK_DEG:
+        return "folded"
+    if self_crossings(triangulation).triangles.size:
+        return "folded"
+    if math.degrees(ruled.largest_crease) >= settings.CREASE_DEG:
+        return "creased"
+    is_stretched = 100.0 * ruled.strain.largest > settings.STRETCH_PERCENT
+    return "stretched" if is_stretched else "developable"
+
+
+def _largest_fold_deg(triangulation: Triangulation) -> float:
+    return math.degrees(float(np.abs(triangulation.fold).max(initial=0.0)))

@@ -22,6 +22,7 @@ from wrinkle_cad.strip.flat.unrolling import Unrolling, unroll, unroll_cones
 from wrinkle_cad.strip.gaps import find_gaps
 from wrinkle_cad.strip.triangulation import Triangulation, triangulate
 
+from .exact_surface import exact_surface
 from .strip_report import Role, StripReport, report_on
 
 if TYPE_CHECKING:
@@ -31,6 +32,7 @@ if TYPE_CHECKING:
 
     from wrinkle_cad.cad.rail.directrix import Directrix
     from wrinkle_cad.strip.curve.sampling import Samples
+    from wrinkle_cad.strip.rulings.surface import RuledStrip
 
     from .cut_pattern import Pattern
 
@@ -55,6 +57,8 @@ class TriangulatedStrip:
         color: of the surface, (red, green, blue) from 0 to 1.
         surface: ``cones`` or ``facets``.
         role: ``strip``, or ``band`` between a strip and the body.
+        thickness: mm; of the material.
+        k_factor: where its neutral layer lies, in shares of the thickness from the inner face.
         findings: what was noticed while it was made.
     """
 
@@ -71,6 +75,8 @@ class TriangulatedStrip:
         color: tuple[float, float, float] = settings.STRIP_COLOR,
         surface: settings.Surface = settings.SURFACE,
         role: Role = "strip",
+        thickness: float = 0.0,
+        k_factor: float = settings.K_FACTOR,
         findings: tuple[Finding, ...] = (),
     ) -> None:
         self.p, self.q = p, q
@@ -81,6 +87,8 @@ class TriangulatedStrip:
         self.color = color
         self.surface: settings.Surface = surface
         self.role: Role = role
+        self.thickness = thickness
+        self.k_factor = k_factor
         self.findings = findings
         self._shells: dict[str, TopoDS_Shell] = {}
 
@@ -194,13 +202,21 @@ class TriangulatedStrip:
             self.name,
             self.triangulation,
             self.unrolling,
+            self.ruled,
             role=self.role,
             area_mm2=self.area_mm2,
             face_count=len(faces_of(self.topods_shell())),
             lengths_mm=self._rail_lengths(),
             least_bending=self.least_bending.bending,
             gaps=find_gaps(self.triangulation),
+            thickness_mm=self.thickness,
+            k_factor=self.k_factor,
         )
+
+    @cached_property
+    def ruled(self) -> RuledStrip:
+        """The exact surface between the two curves: rulings, pieces, strain, creases, radii."""
+        return exact_surface(self.p, self.q, self.p_samples, self.q_samples, self.triangulation)
 
     @property
     def area_mm2(self) -> float:

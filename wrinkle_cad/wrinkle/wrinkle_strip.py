@@ -32,6 +32,8 @@ class WrinkleStrip(TriangulatedStrip):
         q: directrix Q, likewise; turned round when it runs against P, which is reported.
         name: label of the surface and of the pattern.
         color: of the surface, (red, green, blue) from 0 to 1.
+        thickness: mm; of the material, which bends more sharply at its inner face.
+        k_factor: where its neutral layer lies, in shares of the thickness from the inner face.
         options: those of ``StripSettings``, by name; ``help(WrinkleStrip.__init__)`` lists them.
 
     Raises:
@@ -59,6 +61,8 @@ class WrinkleStrip(TriangulatedStrip):
         *,
         name: str = settings.STRIP_NAME,
         color: tuple[float, float, float] = settings.STRIP_COLOR,
+        thickness: float = 0.0,
+        k_factor: float = settings.K_FACTOR,
         **options: Any,
     ) -> None:
         """Finds the strip."""
@@ -91,6 +95,8 @@ class WrinkleStrip(TriangulatedStrip):
             name=name,
             color=color,
             surface=chosen.surface,
+            thickness=thickness,
+            k_factor=k_factor,
             findings=_orientation_findings(name) if was_turned else (),
         )
 

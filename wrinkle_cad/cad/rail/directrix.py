@@ -70,12 +70,19 @@ class Directrix:
         """Returns (k, 3) mm at (k,) parameters; those outside the interval count as its ends."""
         return self._evaluate(parameters, PoleCurve.point_at)
 
+    def velocity_at(self, parameters: Floats) -> Floats:
+        """Returns (k, 3) mm: derivatives by the parameter at (k,) parameters.
+
+        At a break it is the derivative of what follows.
+        """
+        return self._evaluate(parameters, PoleCurve.velocity_at)
+
     def tangent_at(self, parameters: Floats) -> Floats:
         """Returns (k, 3) unit tangents at (k,) parameters.
 
         At a break it is the tangent of what follows; zero where the curve stands still (a cusp).
         """
-        velocity = self._evaluate(parameters, PoleCurve.velocity_at)
+        velocity = self.velocity_at(parameters)
         speed = np.linalg.norm(velocity, axis=1, keepdims=True)
         tangent: Floats = velocity / np.where(speed > 0.0, speed, 1.0)
         return tangent

@@ -1,0 +1,45 @@
+"""The exact surface of a strip between two directrices."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from wrinkle_cad.strip.rulings.rail_curve import RailCurve
+from wrinkle_cad.strip.rulings.surface import RuledStrip, rule_strip
+from wrinkle_cad.strip.rulings.through_points import rail_through
+
+if TYPE_CHECKING:
+    from wrinkle_cad.cad.rail.directrix import Directrix
+    from wrinkle_cad.strip.curve.sampling import Samples
+    from wrinkle_cad.strip.triangulation import Triangulation
+
+
+def exact_surface(
+    p: Directrix,
+    q: Directrix,
+    p_samples: Samples,
+    q_samples: Samples,
+    triangulation: Triangulation,
+) -> RuledStrip:
+    """Returns the surface between two directrices that their triangulation approximates.
+
+    Args:
+        p: directrix P.
+        q: directrix Q, in the same direction.
+        p_samples: the samples of P.
+        q_samples: the samples of Q.
+        triangulation: of these samples.
+    """
+    i, j = triangulation.bridges.T
+    bridges = (p_samples.parameters[i], q_samples.parameters[j])
+    return rule_strip(rail_curve(p), rail_curve(q), bridges)
+
+
+def rail_curve(directrix: Directrix) -> RailCurve:
+    """Returns a directrix as the mathematics takes it; points as the curve they lie on."""
+    if directrix.is_polyline:
+        (piece,) = directrix.pieces
+        return rail_through(piece.poles)
+    return RailCurve(
+        directrix.point_at, directrix.velocity_at, directrix.interval, directrix.breaks
+    )
