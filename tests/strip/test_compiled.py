@@ -11,10 +11,9 @@ PACKAGE = Path(__file__).parents[2] / "wrinkle_cad"
 CODE = """
 import numba, numpy as np
 from wrinkle_cad.strip import triangulate
-from wrinkle_cad.strip.rails import _distances
-points = np.zeros((2, 3))
-assert _distances(points, points + [[0, 0, 1], [0, 0, 2]])[0] == 1.0
-print(type(_distances._cache).__name__)
+from wrinkle_cad.strip.sightlines import bank_lengths
+assert bank_lengths(np.array([[3.0], [4.0], [0.0]]))[0] == 5.0
+print(type(bank_lengths._cache).__name__)
 """
 
 

@@ -68,9 +68,12 @@ def test_finely_sampled_convex_developables_have_no_invalid_bridge(family) -> No
 
 
 def test_a_strict_sign_test_is_destroyed_by_round_off() -> None:
-    strip = exact_strips.convex_cylinder(0).sampled(1e-5)
-    strict = validity_matrix(strip.p, strip.q, planarity=0.0)
-    assert validity_matrix(strip.p, strip.q).sum() > strict.sum()
+    destroyed = 0
+    for seed in range(3):
+        strip = exact_strips.convex_cylinder(seed).sampled(1e-5)
+        strict = validity_matrix(strip.p, strip.q, planarity=0.0)
+        destroyed += int(np.count_nonzero(validity_matrix(strip.p, strip.q) & ~strict))
+    assert destroyed > 0
 
 
 def test_planarity_near_the_chord_tolerance_hides_defects() -> None:
@@ -78,7 +81,7 @@ def test_planarity_near_the_chord_tolerance_hides_defects() -> None:
     found = triangulate(strip.p, strip.q).invalid_count
     assert found > 10
     assert triangulate(strip.p, strip.q, planarity=1e-4).invalid_count == found
-    assert triangulate(strip.p, strip.q, planarity=8e-3).invalid_count == 0
+    assert triangulate(strip.p, strip.q, planarity=8e-3).counted_invalid_count == 0
 
 
 @pytest.mark.parametrize("scale", [1e-3, 1.0, 1e3])
