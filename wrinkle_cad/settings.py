@@ -111,6 +111,18 @@ WaveSide = Literal["out", "in", "both"]
 CRITERIA: Final[tuple[Criterion, ...]] = ("invalid", "bending")
 """GODT+GMBT: as many locally convex bridges as possible, then least bending."""
 
+PRICE: Final = 50.0
+"""What one invalid bridge more is worth, in mean bending energies of a bridge where the strip bends
+least. On 78 strips the last valid bridge to be won cost less than 15, or 21 to 50, or 75 and more:
+for the last, a few bridges were bought with folds of over 45 degrees."""
+
+LARGEST_PRICE: Final = 1e6
+"""Beyond it a sum of bending and prices would lose what one bridge bends."""
+
+PRICE_SAMPLES: Final = 250
+"""The mean bending is taken on rails of at most so many samples; even, so that none is the middle
+one."""
+
 SEARCH: Final = "global"
 ENERGY: Final = "hinge"
 SURFACES: Final = get_args(Surface)
@@ -356,10 +368,6 @@ BAND_FOLD_LIMIT: Final = 2.6
 
 EDGE_TOLERANCE_LIMIT: Final = 1e-3
 """mm; what the largest edge tolerance of a stitched shell may be where the upper's own is less."""
-
-BAND_BENDING_PRICE: Final = 5.0
-"""A band that bends more than so many times the least is taken with the least bending instead:
-its extra valid bridges were bought with folds."""
 
 SEWN_DIRECTLY: Final = 5e-4
 """mm; a profile that stays nearer to the opening's boundary than this is sewn to it directly."""

@@ -49,6 +49,13 @@ def test_a_profile_file_in_a_job_file_starts_at_its_folder(tmp_path: Path) -> No
     assert read["profile"] == str(tmp_path / "our_layers.toml")
 
 
+def test_a_job_file_may_say_that_validity_has_no_price(tmp_path: Path) -> None:
+    (tmp_path / "job.toml").write_text('price = "none"\n')
+    assert make_job(Path("x.step"), None, tmp_path / "job.toml").price is None
+    assert make_job(Path("x.step"), {"price": 3.0}, tmp_path / "job.toml").price == 3.0
+    assert make_job(Path("x.step")).price == 50.0
+
+
 def test_criteria_from_a_job_file_become_a_tuple(tmp_path: Path) -> None:
     (tmp_path / "job.toml").write_text('criteria = ["area"]\n')
     assert make_job(Path("x.step"), None, tmp_path / "job.toml").criteria == ("area",)

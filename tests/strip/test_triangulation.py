@@ -6,11 +6,13 @@ import sys
 from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
+import numpy.typing as npt
 import pytest
 
 from tests.strip import exact_strips
+from tests.strip.small_strips import makes_a_strip, small_strip
 from wrinkle_cad.errors import InputError
-from wrinkle_cad.strip import P_STEP, Q_STEP, Triangulation, triangulate
+from wrinkle_cad.strip import P_STEP, Q_STEP, Triangulation, triangulate, unroll
 from wrinkle_cad.strip.rails import default_planarity, sagittas
 
 STRIPS = [
@@ -20,8 +22,14 @@ STRIPS = [
 NAMES = [strip.name for strip in STRIPS]
 
 
-def counts_of(found: Triangulation) -> tuple[int, int, int]:
-    return found.invalid_count, found.inflection_count, found.degenerate_count
+def counts_of(found: Triangulation) -> tuple[int, ...]:
+    return (
+        found.invalid_count,
+        found.counted_invalid_count,
+        found.inflection_count,
+        found.degenerate_count,
+        found.fold_back_count,
+    )
 
 
 def assert_same(found: Triangulation, other: Triangulation, scale: float = 1.0) -> None:
@@ -61,6 +69,30 @@ def test_swapping_the_rails_changes_no_measure(strip, energy: str) -> None:
 def test_reading_a_strip_from_its_other_end_changes_no_measure(strip) -> None:
     found = triangulate(strip.p, strip.q)
     assert_same(found, triangulate(strip.p[::-1], strip.q[::-1]))
+
+
+CHANGES = {
+    "swapped": lambda p, q: (q, p),
+    "reversed": lambda p, q: (p[::-1], q[::-1]),
+    "mirrored": lambda p, q: (p * [1, 1, -1], q * [1, 1, -1]),
+    "moved": lambda p, q: (p @ rotation(3) + [12, -40, 7], q @ rotation(3) + [12, -40, 7]),
+    "shrunk": lambda p, q: (1e-3 * p, 1e-3 * q),
+    "grown": lambda p, q: (1e3 * p, 1e3 * q),
+}
+
+
+@pytest.mark.parametrize("price", [None, 1.0, 50.0])
+@pytest.mark.parametrize("change", CHANGES)
+def test_flat_places_and_ties_measure_the_same_however_a_strip_is_drawn(
+    change: str, price: float | None
+) -> None:
+    scale = {"shrunk": 1e-3, "grown": 1e3}.get(change, 1.0)
+    for seed in makes_a_strip(range(64)):
+        p, q = small_strip(seed, 9)
+        found = triangulate(p, q, planarity=1e-9, price=price)
+        other = triangulate(*CHANGES[change](p, q), planarity=1e-9 * scale, price=price)
+        assert_same(found, other, scale)
+        assert other.length == pytest.approx(found.length * scale, rel=1e-9)
 
 
 def test_the_paper_energy_depends_on_the_end_a_strip_is_read_from() -> None:
@@ -185,12 +217,40 @@ def test_repeated_points_make_degenerate_triangles_and_nothing_worse() -> None:
     assert np.isfinite(found.bending)
 
 
-def test_a_rail_that_is_one_point_makes_a_cone() -> None:
-    t = np.linspace(0.0, 2.0, 30)
-    ring = exact_strips.stack(np.cos(t), np.sin(t), 0 * t)
-    found = triangulate([[0.0, 0, 1], [0.0, 0, 1]], ring)
+RING = exact_strips.stack(np.cos(np.linspace(0, 2, 30)), np.sin(np.linspace(0, 2, 30)), 0.0)
+APEX = np.array([[0.0, 0, 1]])
+
+
+def test_a_rail_of_two_samples_at_one_point_makes_a_cone() -> None:
+    found = triangulate(np.concatenate((APEX, APEX)), RING)
     assert found.degenerate_count == 1
     assert found.area == pytest.approx(2.0 * np.sqrt(2) / 2, rel=1e-2)
+
+
+@pytest.mark.parametrize("search", ["global", "local"])
+@pytest.mark.parametrize("rails", [(APEX, RING), (RING, APEX)])
+def test_a_rail_of_one_sample_is_the_apex_of_a_cone(
+    rails: tuple[np.ndarray, np.ndarray], search: str
+) -> None:
+    found = triangulate(*rails, search=search)
+    assert found.bridges.shape == (30, 2)
+    assert found.interior_count == found.fold.size == 28
+    assert (found.invalid_count, found.degenerate_count) == (0, 0)
+    assert found.area == pytest.approx(2.0 * np.sqrt(2) / 2, rel=1e-2)
+    flat = unroll(found)
+    assert (len(flat.p), len(flat.q)) == (len(rails[0]), len(rails[1]))
+    assert flat.area == pytest.approx(found.area, rel=1e-12)
+
+
+def test_one_triangle_is_a_strip_too() -> None:
+    found = triangulate([[0.0, 0, 0]], [[0.0, 2, 0], [1, 2, 0]])
+    assert (found.area, found.interior_count) == (1.0, 0)
+    assert (found.least_bending, found.bending) == (0.0, 0.0)
+
+
+def test_two_points_make_no_strip() -> None:
+    with pytest.raises(InputError, match="P and Q are a single point each"):
+        triangulate(APEX, APEX + 1.0)
 
 
 def test_strips_of_microns_and_of_twenty_metres_work() -> None:
@@ -216,10 +276,10 @@ SIDE = [[0.0, 1, 0], [1, 1, 0], [2, 1, 0]]
 @pytest.mark.parametrize(
     ("p", "message"),
     [
-        ([[0.0, 0, 0]], r"directrix P - shape \(1, 3\) - shape \(k, 3\) with k >= 2"),
         ([[0.0, 0], [1, 0]], r"directrix P - shape \(2, 2\)"),
         ([0.0, 1, 2], r"directrix P - shape \(3,\)"),
         ([], r"directrix P - shape \(0,\)"),
+        (np.empty((0, 3)), r"directrix P - shape \(0, 3\) - shape \(k, 3\) with k >= 1"),
         ([["a", 0, 0], [1, 0, 0]], "directrix P - not an array of numbers"),
         ([[0.0, 0, 0], [1, 0]], "directrix P - not an array of numbers"),
         ([[0.0, 0, 0], [np.nan, 0, 0]], "directrix P - 1 samples are not finite, .* number 1"),
@@ -227,7 +287,7 @@ SIDE = [[0.0, 1, 0], [1, 1, 0], [2, 1, 0]]
         ([[0.0, 0, 0], [1e12, 0, 0]], "directrix P - a coordinate of 1e.12 mm"),
     ],
 )
-def test_what_is_no_rail_is_refused(p: list, message: str) -> None:
+def test_what_is_no_rail_is_refused(p: npt.ArrayLike, message: str) -> None:
     with pytest.raises(InputError, match=message):
         triangulate(p, SIDE)
     with pytest.raises(InputError, match=message.replace("directrix P", "directrix Q")):

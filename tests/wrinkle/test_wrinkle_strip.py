@@ -140,10 +140,20 @@ def test_step_and_stl_are_written_from_a_script(strip: WrinkleStrip, tmp_path: P
 
 def test_the_local_search_is_never_better_than_the_global_one() -> None:
     wavy = arc_points(20.0) + 3 * np.sin(np.linspace(0, 12, 40))[:, None] * [0, 0.2, 1]
-    best = WrinkleStrip(arc_points(0.0), wavy).triangulation
+    best = WrinkleStrip(arc_points(0.0), wavy, price=None).triangulation
     greedy = WrinkleStrip(arc_points(0.0), wavy, search="local").triangulation
     assert (best.invalid_count, best.bending) <= (greedy.invalid_count, greedy.bending)
     assert best.invalid_count > 0
+
+
+def test_the_price_of_validity_stands_in_the_report() -> None:
+    wavy = arc_points(20.0) + 3 * np.sin(np.linspace(0, 12, 40))[:, None] * [0, 0.2, 1]
+    cheap = WrinkleStrip(arc_points(0.0), wavy, price=0.0).report
+    assert (cheap.price, cheap.fold_backs) == (0.0, 0)
+    dear = WrinkleStrip(arc_points(0.0), wavy, price=None).report
+    assert dear.price is None
+    assert dear.counted_invalid_bridges <= cheap.counted_invalid_bridges <= dear.interior_bridges
+    assert dear.bending >= cheap.bending == pytest.approx(cheap.least_bending, rel=1e-9)
 
 
 def test_cadquery_shapes_are_equal_guests() -> None:

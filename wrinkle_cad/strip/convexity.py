@@ -80,8 +80,8 @@ def validity_matrix(p: npt.ArrayLike, q: npt.ArrayLike, *, planarity: float | No
         (m, n) bool, read-only; entry [i, j] is bridge p[i] q[j].
 
     Raises:
-        InputError: a rail is no (k, 3) array of at least two finite points, or planarity is
-            negative.
+        InputError: a rail is no (k, 3) array of finite points, both are single points, or
+            planarity is negative.
     """
     p, q = checked_rails(p, q)
     limit = checked_planarity(p, q, planarity)

@@ -21,7 +21,8 @@ ENERGIES = {"hinge": HINGE, "paper": PAPER}
 triangles over it; |2 tan(fold/2)| is the discrete curvature of Grinspun et al., "Discrete shells",
 2003. Monotone in the fold, infinite at 180 degrees, the same from both ends of the strip.
 `paper`: A sin^2(fold) / L^2 with area A and height L of the later triangle, Eq. (3) of Wang and
-Tang. A fold of 180 degrees costs nothing there, and the two ends of a strip differ."""
+Tang. It falls again beyond 90 degrees, and the two ends of a strip differ. Folds of 180 degrees
+cost nothing by either energy and are counted instead; so do coplanar triangles, which are not."""
 
 _STEEPEST = STEEPEST_HALF_FOLD
 
@@ -31,6 +32,9 @@ class StepCosts(NamedTuple):
 
     bending: Floats
     """(4, n) float64; bending energy at the bridge; row 2 * earlier step + later step."""
+    bent: Floats
+    """(4, n) float64; rows as in bending; 1.0 if the two triangles have areas and are not coplanar,
+    else 0.0."""
     fold_backs: Floats
     """(4, n) float64; rows as in bending; 1.0 for a fold of 180 degrees, else 0.0."""
     heights: Floats
@@ -50,8 +54,8 @@ def fold_cost(
     bx: float,
     by: float,
     second: float,
-    nothing: float,
-) -> tuple[float, float]:
+    flatness: float,
+) -> tuple[float, float, float]:
     """The hinge energy of the fold at a bridge between two triangles that are not degenerate.
 
     Written without branches, so that a loop over it runs on vector units.
@@ -64,24 +68,32 @@ def fold_cost(
         bx: mm; with by the later triangle's third vertex.
         by: mm; see bx.
         second: mm; length of (bx, by), the later triangle's height.
-        nothing: mm; an offset from the other triangle's plane that is round-off.
+        flatness: mm; triangles are coplanar if the nearer of both third vertices to the other
+            triangle's plane is no further from it and they lie on opposite sides of the bridge.
 
     Returns:
-        The bending energy, and 1.0 if the later triangle folds back onto the earlier one, else 0.0;
-        such a fold costs no (infinite) energy but is counted.
+        The bending energy, 0.0 for coplanar triangles; 1.0 if they are not coplanar, else 0.0; and
+        1.0 if the later triangle folds back onto the earlier one, else 0.0: that is, if they would
+        be coplanar but lie on the same side, or the energy is too large to be added up. Such a fold
+        costs no energy but is counted.
     """
     size = first * second
     sine = abs(ay * bx - ax * by)
-    sine = 0.0 if sine <= nothing * max(first, second) else sine
     cosine = -(ax * bx + ay * by)
+    is_plane = sine <= flatness * max(first, second)
     is_sharp = cosine < 0.0
     far = size + abs(cosine)
-    is_back = is_sharp and far >= _STEEPEST * sine
+    is_back = is_sharp and (is_plane or far >= _STEEPEST * sine)
+    is_bent = is_sharp or not is_plane
     # The tangent of half the angle, by whichever formula does not cancel.
     half_over = far if is_sharp else sine
     half_under = sine if is_sharp else far
     bending = length * (first + second) * half_over * half_over / (half_under * half_under * size)
-    return 0.0 if is_back else bending, 1.0 if is_back else 0.0
+    return (
+        bending if is_bent and not is_back else 0.0,
+        1.0 if is_bent else 0.0,
+        1.0 if is_back else 0.0,
+    )
 
 
 class _Side(NamedTuple):
@@ -91,6 +103,14 @@ class _Side(NamedTuple):
     y: Floats
     height: Floats
     degenerate: Floats
+
+
+class _Folds(NamedTuple):
+    """What n bridges cost between two sides: rows of StepCosts."""
+
+    bending: Floats
+    bent: Floats
+    fold_backs: Floats
 
 
 @compiled
@@ -107,31 +127,25 @@ def _measure_triangles(length: Floats, banks: Floats, nothing: float, side: _Sid
 
 
 @compiled
-def _cost_hinges(
-    length: Floats, a: _Side, b: _Side, nothing: float, bending: Floats, fold_backs: Floats
-) -> None:
-    """Writes hinge energies and fold-backs between the triangles on two sides."""
+def _cost_folds(length: Floats, a: _Side, b: _Side, flatness: float, folds: _Folds) -> None:
+    """Writes hinge energies, bent pairs and fold-backs of the triangles on two sides."""
     for j in range(length.size):
-        bent, back = fold_cost(
-            length[j], a.x[j], a.y[j], a.height[j], b.x[j], b.y[j], b.height[j], nothing
+        energy, bent, back = fold_cost(
+            length[j], a.x[j], a.y[j], a.height[j], b.x[j], b.y[j], b.height[j], flatness
         )
         has_fold = a.degenerate[j] + b.degenerate[j] == 0.0
-        bending[j] = bent if has_fold else 0.0
-        fold_backs[j] = back if has_fold else 0.0
+        folds.bending[j] = energy if has_fold else 0.0
+        folds.bent[j] = bent if has_fold else 0.0
+        folds.fold_backs[j] = back if has_fold else 0.0
 
 
 @compiled
-def _cost_by_the_paper(
-    length: Floats, a: _Side, b: _Side, nothing: float, bending: Floats, fold_backs: Floats
-) -> None:
-    """Writes the energies of Eq. (3); that equation knows no fold-backs."""
+def _cost_by_the_paper(length: Floats, a: _Side, b: _Side, folds: _Folds) -> None:
+    """Replaces hinge energies by those of Eq. (3); the same bridges cost nothing."""
     for j in range(length.size):
-        sine = abs(a.y[j] * b.x[j] - a.x[j] * b.y[j])
-        sine = 0.0 if sine <= nothing * max(a.height[j], b.height[j]) else sine
-        sine /= a.height[j] * b.height[j]
-        has_fold = a.degenerate[j] + b.degenerate[j] == 0.0
-        bending[j] = 0.5 * length[j] * sine * sine / b.height[j] if has_fold else 0.0
-        fold_backs[j] = 0.0
+        sine = abs(a.y[j] * b.x[j] - a.x[j] * b.y[j]) / (a.height[j] * b.height[j])
+        energy = 0.5 * length[j] * sine * sine / b.height[j]
+        folds.bending[j] = energy if folds.bent[j] > folds.fold_backs[j] else 0.0
 
 
 @compiled
@@ -148,6 +162,7 @@ def new_costs(count: int) -> StepCosts:
         np.empty((4, count)),
         np.empty((4, count)),
         np.empty((4, count)),
+        np.empty((4, count)),
         np.empty((2, count)),
     )
 
@@ -157,6 +172,7 @@ def cost_row(
     view: Floats,
     banks: Floats,
     nothing: float,
+    planarity: float,
     energy: int,
     costs: StepCosts,
 ) -> None:
@@ -167,6 +183,7 @@ def cost_row(
         banks: (4, n) float64, mm; lengths of the bank edges before and after on P, before and after
             on Q; zero where there is none.
         nothing: mm; round-off.
+        planarity: mm; how far from the other triangle's plane a third vertex lies in it.
         energy: HINGE or PAPER.
         costs: written.
     """
@@ -179,11 +196,10 @@ def cost_row(
         for earlier in range(2):
             before = _side_of(view, costs, 2 * earlier)
             row = 2 * earlier + later
-            bending, fold_backs = costs.bending[row], costs.fold_backs[row]
+            folds = _Folds(costs.bending[row], costs.bent[row], costs.fold_backs[row])
+            _cost_folds(length, before, after, max(planarity, nothing), folds)
             if energy == PAPER:
-                _cost_by_the_paper(length, before, after, nothing, bending, fold_backs)
-            else:
-                _cost_hinges(length, before, after, nothing, bending, fold_backs)
+                _cost_by_the_paper(length, before, after, folds)
 
 
 def fold_angles(view: Floats, steps: npt.NDArray[np.int8]) -> Floats:

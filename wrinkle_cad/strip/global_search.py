@@ -7,86 +7,70 @@ tuples compared in order, so one pass minimises all criteria over all paths, whe
 one path with the fewest invalid bridges and bends only its gaps less.
 
 The program runs from the last bridge to the first and remembers for each node which step to
-take next; of two steps that cost the same in every criterion it takes the P-step.
+take next; of two steps that cost the same in every part of the objective it takes the P-step.
+Sums of energies, areas or lengths are the same if they differ by no more than objective.REAL_TIE
+of themselves, so that round-off decides nothing; a result may cost more than the least by as much
+at each bridge.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-
 import numpy as np
 import numpy.typing as npt
-
-from wrinkle_cad.errors import InputError
 
 from .compiled import compiled
 from .convexity import judge_row
 from .folding import StepCosts, cost_row, new_costs
+from .objective import (
+    AREA,
+    BENDING,
+    DEGENERATE,
+    FLAT_INVALID,
+    FOLD_BACK,
+    INVALID,
+    LENGTH,
+    TIE,
+    Part,
+    Weights,
+)
 from .sightlines import VIEW_ROWS, bank_lengths, look_along, padded_banks
 
 Floats = npt.NDArray[np.float64]
-Weights = tuple[tuple[float, float, float, float, float], ...]
-
-INVALID, DEGENERATE, BENDING, AREA, LENGTH = range(5)
-"""What is measured at a bridge and on the step that leaves it; columns of the weights."""
-
-_MEASURES = {
-    "invalid": (INVALID,),
-    "bending": (DEGENERATE, BENDING),
-    "area": (AREA,),
-    "length": (LENGTH,),
-}
-
-_COUNT_BASE = 2.0**26
-"""Two counts share a float64 exactly as long as a strip has fewer bridges than this."""
-
-
-def weights_of(criteria: Sequence[str]) -> Weights:
-    """Returns one row of weights per part of the cost, in order of comparison.
-
-    A part is the weighted sum of invalid bridges, degenerate triangles, bending, area and length.
-    Degenerate triangles (and folds of 180 degrees) count as a criterion of their own just before
-    bending; two counts in a row share a part.
-
-    Raises:
-        InputError: there is no criterion, an unknown one, or one twice.
-    """
-    names = list(criteria) if not isinstance(criteria, str) else [criteria]
-    unknown = [name for name in names if name not in _MEASURES]
-    if unknown or not names or len(set(names)) < len(names):
-        found = ", ".join(map(str, names)) or "none"
-        raise InputError(
-            f"criteria - {found} - an ordered choice of {', '.join(_MEASURES)}, each once"
-            ' - for instance ("invalid", "bending")'
-        )
-    rows: list[list[float]] = []
-    last = -1
-    for measure in (measure for name in names for measure in _MEASURES[name]):
-        if measure == DEGENERATE and last == INVALID:
-            rows[-1][INVALID] = _COUNT_BASE
-            rows[-1][DEGENERATE] = 1.0
-        else:
-            rows.append([1.0 if column == measure else 0.0 for column in range(5)])
-        last = measure
-    return tuple((row[0], row[1], row[2], row[3], row[4]) for row in rows)
 
 
 @compiled
-def _later_step(
-    weights: Weights, to_p: Floats, to_q: Floats, bending: Floats, fold_backs: Floats
+def _fold_cost(part: Part, costs: StepCosts, invalid: float, row: int, j: int) -> float:
+    """What one part of the cost says to the fold at bridge j, by the steps around it (row)."""
+    back, bent = costs.fold_backs[row, j], costs.bent[row, j]
+    counts = part[FOLD_BACK] * back + part[INVALID] * (invalid * bent)
+    return float(counts + part[BENDING] * costs.bending[row, j])
+
+
+@compiled
+def later_step(
+    weights: Weights, to_end: Floats, costs: StepCosts, invalid: float, earlier: int, j: int
 ) -> int:
-    """The better step to take, after the folds that it makes are added; ties go to the P-step."""
-    for part in range(len(weights)):
-        fold, bend = weights[part][DEGENERATE], weights[part][BENDING]
-        p_cost = to_p[part] + (fold * fold_backs[0] + bend * bending[0])
-        q_cost = to_q[part] + (fold * fold_backs[1] + bend * bending[1])
-        if p_cost != q_cost:
+    """Returns the better step to take from bridge j of a row; ties go to the P-step.
+
+    Args:
+        weights: parts of the cost.
+        to_end: (2, parts) float64; cost of each step's triangle and of all behind it.
+        costs: of the row's bridges.
+        invalid: 1.0 if the bridge is not locally convex, else 0.0.
+        earlier: the step that arrived here.
+        j: the bridge.
+    """
+    for number in range(len(weights)):
+        part = weights[number]
+        p_cost = to_end[0, number] + _fold_cost(part, costs, invalid, 2 * earlier, j)
+        q_cost = to_end[1, number] + _fold_cost(part, costs, invalid, 2 * earlier + 1, j)
+        if abs(p_cost - q_cost) > part[TIE] * (p_cost + q_cost):
             return 0 if p_cost < q_cost else 1
     return 0
 
 
 @compiled
-def _decide_row(
+def decide_row(
     weights: Weights,
     is_last_row: bool,
     view: Floats,
@@ -97,49 +81,51 @@ def _decide_row(
 ) -> None:
     """Decides the step to take from each bridge of a row, from its last bridge to its first.
 
-    `ahead` (n, parts) holds the costs from the next row's bridges, reached by a P-step, to the
-    end; on return those from this row's. Bit 0 of a choice is the step to take (0: P) after
-    a P-step, bit 1 that after a Q-step.
+    One row of the dynamic program. Where a strip ends is said by `ahead` and `is_last_row` alone.
+
+    Args:
+        weights: parts of the cost, in order of comparison.
+        is_last_row: no P-step leaves this row: it ends at its last bridge.
+        view: (9, n) float64, mm; the row's bridges (look_along).
+        valid: (n,) bool; which of them are locally convex.
+        costs: what leaving them costs (cost_row).
+        ahead: (n, parts) float64; costs from the next row's bridges, reached by a P-step, to the
+            end; on return those from this row's.
+        choices: (n,) uint8; written. Bit 0 is the step to take (0: P) after a P-step, bit 1 that
+            after a Q-step.
     """
-    bending, fold_backs, degenerate, area = (
-        costs.bending,
-        costs.fold_backs,
-        costs.degenerate[1::2],
-        costs.area,
-    )
     parts = len(weights)
     last = view.shape[1] - 1
-    to_end = np.zeros((2, parts))
     cost = np.zeros((2, parts))
+    after_q = np.zeros(parts)
     for j in range(last, -1, -1):
-        for part in range(parts):
-            flat, size = weights[part][DEGENERATE], weights[part][AREA]
-            cost[0, part] = ahead[j, part] + (flat * degenerate[0, j] + size * area[0, j])
-            cost[1, part] = to_end[1, part] + (flat * degenerate[1, j] + size * area[1, j])
+        for number in range(parts):
+            part = weights[number]
+            flat, size = part[DEGENERATE], part[AREA]
+            p_triangle = flat * costs.degenerate[1, j] + size * costs.area[0, j]
+            q_triangle = flat * costs.degenerate[3, j] + size * costs.area[1, j]
+            cost[0, number] = ahead[j, number] + p_triangle
+            cost[1, number] = after_q[number] + q_triangle
         choice = 0
+        invalid = 0.0 if valid[j] else 1.0
+        is_end = is_last_row and j == last
         for earlier in range(2):
-            row = 2 * earlier
-            if j == last or is_last_row:
+            if is_last_row or j == last:
                 later = 1 if is_last_row else 0
             else:
-                later = _later_step(
-                    weights,
-                    cost[0],
-                    cost[1],
-                    bending[row : row + 2, j],
-                    fold_backs[row : row + 2, j],
-                )
+                later = later_step(weights, cost, costs, invalid, earlier, j)
             choice |= later << earlier
-            for part in range(parts):
-                weight = weights[part]
-                own = weight[INVALID] * (0.0 if valid[j] else 1.0) + weight[LENGTH] * view[0, j]
-                fold = weight[DEGENERATE] * fold_backs[row + later, j]
-                fold += weight[BENDING] * bending[row + later, j]
-                is_end = is_last_row and j == last
-                to_end[earlier, part] = own + (0.0 if is_end else cost[later, part] + fold)
+            for number in range(parts):
+                part = weights[number]
+                own = part[LENGTH] * view[0, j] + part[FLAT_INVALID] * invalid
+                if not is_end:
+                    fold = _fold_cost(part, costs, invalid, 2 * earlier + later, j)
+                    own += cost[later, number] + fold
+                if earlier == 0:
+                    ahead[j, number] = own
+                else:
+                    after_q[number] = own
         choices[j] = choice
-        for part in range(parts):
-            ahead[j, part] = to_end[0, part]
 
 
 @compiled
@@ -153,7 +139,7 @@ def _decide_all(
     nothing: float,
     energy: int,
 ) -> npt.NDArray[np.uint8]:
-    """The step to take from every bridge, (m, n) uint8, as _decide_row writes it."""
+    """The step to take from every bridge, (m, n) uint8, as decide_row writes it."""
     m, n = p.shape[0], q.shape[1]
     view = np.empty((VIEW_ROWS, n))
     valid = np.empty(n, dtype=np.bool_)
@@ -168,8 +154,8 @@ def _decide_all(
         banks[0], banks[1] = p_lengths[i], p_lengths[i + 1]
         look_along(p[i], p_banks[:, i : i + 2], q, q_banks, view)
         judge_row(view, planarity, valid)
-        cost_row(view, banks, nothing, energy, costs)
-        _decide_row(weights, i == m - 1, view, valid, costs, ahead, choices[i])
+        cost_row(view, banks, nothing, planarity, energy, costs)
+        decide_row(weights, i == m - 1, view, valid, costs, ahead, choices[i])
     return choices
 
 
@@ -196,8 +182,8 @@ def best_steps(
     Args:
         p: (m, 3) float64, mm; checked samples of directrix P.
         q: (n, 3) float64, mm; checked samples of directrix Q.
-        weights: parts of the cost, in order of comparison (weights_of).
-        planarity: mm; see validity_matrix.
+        weights: parts of the cost, in order of comparison (objective.weights_of).
+        planarity: mm; see validity_matrix; also how far coplanar triangles are apart.
         nothing: mm; a distance that is round-off.
         energy: HINGE or PAPER.
 

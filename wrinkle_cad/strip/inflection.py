@@ -44,8 +44,9 @@ def plane_misfit(view: Floats) -> Floats:
 def inflection_bridges(path: Path, sagitta: float) -> Bools:
     """Returns which invalid interior bridges stand at a change of bending and are no defect.
 
-    The neighbours of such a bridge share a tangent plane to within what the sampling can tell, and
-    it has a valid bridge bent up before it and a valid one bent down behind it (or the reverse),
+    Where nothing bends, both triangles in one plane or one without area, that is so. Elsewhere the
+    neighbours of such a bridge share a tangent plane to within what the sampling can tell, and it
+    has a valid bridge bent up before it and a valid one bent down behind it (or the reverse),
     both at most two samples away, counted on the rail where that is less. Where two changes of
     bending fall between samples, a run of invalid bridges is bent against the valid ones on both
     sides; that is told from a mere twist, which alternates from sample to sample, by a plane that
@@ -65,10 +66,12 @@ def inflection_bridges(path: Path, sagitta: float) -> Bools:
     near = _near(path.bridges)
     fold = np.concatenate(([0.0], path.fold, [0.0]))
     misfit = np.zeros(invalid.size)
-    misfit[invalid] = plane_misfit(path.view[:, invalid]) / max(sagitta, np.finfo(float).tiny)
-    is_single = _single_changes(near, path.valid, fold) & (misfit <= INFLECTION_SAGITTAS)
-    is_double = _double_changes(near, invalid, fold) & (misfit <= DOUBLE_INFLECTION_SAGITTAS)
-    result: Bools = invalid & (is_single | is_double)
+    misfit[invalid] = plane_misfit(path.view[:, invalid])
+    is_single = _single_changes(near, path.valid, fold) & (misfit <= INFLECTION_SAGITTAS * sagitta)
+    is_double = _double_changes(near, invalid, fold) & (
+        misfit <= DOUBLE_INFLECTION_SAGITTAS * sagitta
+    )
+    result: Bools = invalid & (is_single | is_double | ~path.is_bent)
     return result
 
 

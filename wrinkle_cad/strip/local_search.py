@@ -5,10 +5,12 @@ What the paper leaves open is decided so:
 - The nearest valid bridge of (i, j) has i' > i, j' > j and the smallest (i'-i) + (j'-j); of several
   it is the one with the largest i'. The last bridge counts as valid, since it is in every
   triangulation, so a nearest one always exists.
-- The fold at the first bridge costs nothing, so there the P-step is taken. Of two steps that
-  bend equally the P-step is taken everywhere.
-- A step that makes a triangle of zero area, or folds back by 180 degrees, comes after one that
-  does not, whatever it bends.
+- Where the paper compares bending, a step that folds back by 180 degrees comes after one that does
+  not, then one that makes a triangle of zero area, whatever it bends; coplanar triangles do not
+  bend. Of two steps that bend equally (at the first bridge nothing bends) the one to the shorter
+  bridge is taken, of equal ones the P-step.
+- A valid bridge is preferred to an invalid one as the paper says, even where the strip is flat or
+  folds back: one step ahead, nothing tells whether the next bridge bends. There is no price.
 """
 
 from __future__ import annotations
@@ -19,6 +21,7 @@ import numpy.typing as npt
 from .compiled import compiled
 from .convexity import judge_row
 from .folding import cost_row, new_costs
+from .objective import REAL_TIE
 from .sightlines import VIEW_ROWS, bank_lengths, look_along, padded_banks
 
 Floats = npt.NDArray[np.float64]
@@ -43,7 +46,16 @@ def _is_valid(rails: Rails, i: int, j: int, planarity: float) -> bool:
 
 
 @compiled
-def _easier_step(rails: Rails, i: int, j: int, earlier: int, nothing: float, energy: int) -> int:
+def _bridge_length(rails: Rails, i: int, j: int) -> float:
+    p, _, q, _ = rails
+    x, y, z = q[0, j] - p[i, 0], q[1, j] - p[i, 1], q[2, j] - p[i, 2]
+    return float(np.sqrt(x * x + y * y + z * z))
+
+
+@compiled
+def _easier_step(
+    rails: Rails, i: int, j: int, earlier: int, planarity: float, nothing: float, energy: int
+) -> int:
     """The step that bends bridge (i, j) less, after the earlier one that arrived there."""
     view = np.empty((VIEW_ROWS, 1))
     banks = np.empty((4, 1))
@@ -51,13 +63,18 @@ def _easier_step(rails: Rails, i: int, j: int, earlier: int, nothing: float, ene
     _look(rails, i, j, view)
     banks[:2, 0] = bank_lengths(rails[1][:, i : i + 2])
     banks[2:, 0] = bank_lengths(rails[3][:, j : j + 2])
-    cost_row(view, banks, nothing, energy, costs)
+    cost_row(view, banks, nothing, planarity, energy, costs)
     row = 2 * earlier
-    p_count = costs.degenerate[1, 0] + costs.fold_backs[row, 0]
-    q_count = costs.degenerate[3, 0] + costs.fold_backs[row + 1, 0]
-    if p_count != q_count:
-        return 0 if p_count < q_count else 1
-    return 0 if costs.bending[row, 0] <= costs.bending[row + 1, 0] else 1
+    parts = (
+        (costs.fold_backs[row, 0], costs.fold_backs[row + 1, 0], 0.0),
+        (costs.degenerate[1, 0], costs.degenerate[3, 0], 0.0),
+        (costs.bending[row, 0], costs.bending[row + 1, 0], REAL_TIE),
+        (_bridge_length(rails, i + 1, j), _bridge_length(rails, i, j + 1), REAL_TIE),
+    )
+    for p_cost, q_cost, tie in parts:
+        if abs(p_cost - q_cost) > tie * (p_cost + q_cost):
+            return 0 if p_cost < q_cost else 1
+    return 0
 
 
 @compiled
@@ -92,14 +109,14 @@ def _walk(
             elif not (p_valid and q_valid):
                 step = 0 if p_valid else 1
             else:
-                step = _easier_step(rails, i, j, step, nothing, energy)
+                step = _easier_step(rails, i, j, step, planarity, nothing, energy)
         elif goal_i < 0:
             step = 0 if j == n - 1 else 1
         if goal_i >= 0:
             if i == goal_i or j == goal_j:
                 step = 0 if j == goal_j else 1
             else:
-                step = _easier_step(rails, i, j, step, nothing, energy)
+                step = _easier_step(rails, i, j, step, planarity, nothing, energy)
         steps[number] = step
         i, j = i + 1 - step, j + step
     return steps

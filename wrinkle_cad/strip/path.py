@@ -30,14 +30,16 @@ class Path:
     """(k,) bool; locally convex bridges."""
     is_flat: Bools
     """(k-1,) bool; triangles of zero area."""
+    is_bent: Bools
+    """(k,) bool; interior bridges whose two triangles have areas and are not coplanar."""
+    is_folded_back: Bools
+    """(k,) bool; interior bridges at which one triangle lies on the other."""
     fold: Floats
     """(k-2,) float64, rad; signed fold angle of each interior bridge, 0 beside a flat triangle."""
     bending_at: Floats
     """(k-2,) float64; bending energy of each interior bridge."""
     area: float
     """mm2; of all triangles."""
-    degenerate_count: int
-    """Triangles of zero area and folds of 180 degrees."""
 
 
 def bridges_of(steps: Steps) -> npt.NDArray[np.int64]:
@@ -67,7 +69,7 @@ def walk(
     valid = np.empty(bridges.shape[0], dtype=np.bool_)
     judge_row(view, planarity, valid)
     costs = new_costs(bridges.shape[0])
-    cost_row(view, _bank_lengths_at(bridges, p_banks, q_banks), nothing, energy, costs)
+    cost_row(view, _bank_lengths_at(bridges, p_banks, q_banks), nothing, planarity, energy, costs)
     leaving = np.arange(steps.size)
     is_flat = costs.degenerate[2 * steps + 1, leaving] > 0.0
     turn = 2 * steps[:-1] + steps[1:], leaving[1:]
@@ -80,10 +82,15 @@ def walk(
         valid=valid,
         is_flat=is_flat,
         fold=fold,
+        is_bent=_at_interior(costs.bent[turn]),
+        is_folded_back=_at_interior(costs.fold_backs[turn]),
         bending_at=costs.bending[turn],
         area=float(costs.area[steps, leaving].sum()),
-        degenerate_count=int(is_flat.sum() + costs.fold_backs[turn].sum()),
     )
+
+
+def _at_interior(marks: Floats) -> Bools:
+    return np.concatenate(([False], marks > 0.0, [False]))
 
 
 def _bank_lengths_at(bridges: npt.NDArray[np.int64], p_banks: Floats, q_banks: Floats) -> Floats:

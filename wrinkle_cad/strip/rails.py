@@ -24,13 +24,19 @@ def checked_rails(p: npt.ArrayLike, q: npt.ArrayLike) -> tuple[Floats, Floats]:
     """Returns both rails as new float64 arrays, or says what is wrong with them.
 
     Args:
-        p: (m, 3) float, mm; samples of directrix P, m >= 2. Not written to.
-        q: (n, 3) float, mm; samples of directrix Q, n >= 2. Not written to.
+        p: (m, 3) float, mm; samples of directrix P, m >= 1. Not written to.
+        q: (n, 3) float, mm; samples of directrix Q, n >= 1. Not written to.
 
     Raises:
-        InputError: a rail is no (k, 3) array of at least two finite points.
+        InputError: a rail is no (k, 3) array of finite points, or both are single points.
     """
-    return _checked_rail(p, "P"), _checked_rail(q, "Q")
+    rails = _checked_rail(p, "P"), _checked_rail(q, "Q")
+    if len(rails[0]) == len(rails[1]) == 1:
+        raise InputError(
+            "strip - P and Q are a single point each - at most one of them may be a point"
+            " - pass at least two samples of the other"
+        )
+    return rails
 
 
 def _checked_rail(points: npt.ArrayLike, name: str) -> Floats:
@@ -41,9 +47,9 @@ def _checked_rail(points: npt.ArrayLike, name: str) -> Floats:
             f"directrix {name} - not an array of numbers ({error}) - a (k, 3) array is needed"
             " - pass one x, y, z per sample"
         ) from error
-    if rail.ndim != 2 or rail.shape[1] != 3 or rail.shape[0] < 2:
+    if rail.ndim != 2 or rail.shape[1] != 3 or rail.shape[0] < 1:
         raise InputError(
-            f"directrix {name} - shape {rail.shape} - shape (k, 3) with k >= 2 is needed -"
+            f"directrix {name} - shape {rail.shape} - shape (k, 3) with k >= 1 is needed -"
             " pass one x, y, z per sample"
         )
     bad = np.flatnonzero(~np.isfinite(rail).all(axis=1))
@@ -145,8 +151,10 @@ def check_rails_apart(p: Floats, q: Floats, planarity: float) -> None:
     Raises:
         InputError: the strip has no width over a stretch; the message says where.
     """
-    p_gap = nearest_on_polyline(p, q).distance
-    q_gap = nearest_on_polyline(q, p).distance
+    # A rail of one point is a polyline of one segment without length.
+    p_line, q_line = (np.repeat(rail, 2, axis=0) if len(rail) == 1 else rail for rail in (p, q))
+    p_gap = nearest_on_polyline(p, q_line).distance
+    q_gap = nearest_on_polyline(q, p_line).distance
     p_limit = max(planarity, COINCIDENT_SAGITTAS * typical_sagitta(q))
     q_limit = max(planarity, COINCIDENT_SAGITTAS * typical_sagitta(p))
     if p_gap.max() <= p_limit and q_gap.max() <= q_limit:

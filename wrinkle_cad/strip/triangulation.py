@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any, Final
@@ -10,14 +11,25 @@ import numpy as np
 import numpy.typing as npt
 
 from wrinkle_cad.errors import InputError
-from wrinkle_cad.settings import CRITERIA, ENERGY, SEARCH, Criterion, Energy, Search
+from wrinkle_cad.settings import (
+    CRITERIA,
+    ENERGY,
+    LARGEST_PRICE,
+    PRICE,
+    SEARCH,
+    Criterion,
+    Energy,
+    Search,
+)
 
 from .folding import ENERGIES
-from .global_search import Weights, best_steps, weights_of
+from .global_search import best_steps
 from .inflection import fan_aware_twist, inflection_bridges
 from .local_search import local_steps
+from .objective import checked_criteria, is_priced, weights_of
 from .path import walk
 from .rails import check_rails_apart, checked_planarity, checked_rails, coarser_sagitta, round_off
+from .validity_price import invalid_cost, least_bending
 
 Floats = npt.NDArray[np.float64]
 Bools = npt.NDArray[np.bool_]
@@ -51,7 +63,14 @@ class Triangulation:
     valid: Bools
     """(m+n-1,) bool; locally convex bridges (see validity_matrix)."""
     inflection: Bools
-    """(m+n-1,) bool; invalid interior bridges where the bending changes sign: no defects."""
+    """(m+n-1,) bool; invalid interior bridges where the bending changes sign or nothing bends: no
+    defects."""
+    counted: Bools
+    """(m+n-1,) bool; invalid interior bridges at which the strip bends: what the objective counts.
+    Where both triangles lie in one plane, or one has no area, an invalid bridge is no defect."""
+    folded_back: Bools
+    """(m+n-1,) bool; interior bridges at which one triangle lies on the other, on the same side of
+    the bridge: a fold of 180 degrees to within the planarity."""
     fold: Floats
     """(m+n-3,) float64, rad; fold angle of each interior bridge, 0 when flat, positive for a ridge
     seen from the side where the triangles are counter-clockwise; 0 beside a degenerate triangle."""
@@ -66,7 +85,7 @@ class Triangulation:
     length: float
     """mm; sum of the bridges' lengths."""
     degenerate_count: int
-    """Triangles of zero area, and folds of 180 degrees, neither of which bends at finite cost."""
+    """Triangles of zero area, beside which nothing bends."""
     planarity: float
     """mm; how far a neighbour may lie on the wrong side of a valid bridge's plane."""
     criteria: tuple[Criterion, ...]
@@ -75,6 +94,13 @@ class Triangulation:
     """"global" or "local"."""
     energy: Energy
     """"hinge" or "paper"."""
+    price: float | None = None
+    """What one invalid bridge more was worth, in mean bending energies of the least-bending
+    triangulation; None where validity came first or no price applies."""
+    least_bending: float | None = None
+    """What the price was measured by: the least bending energy among all triangulations with the
+    fewest fold-backs and degenerate triangles, of the strip itself or, where a side has over 250
+    samples, of that side thinned to 250; None without a price."""
     is_closed: bool = False
     """Whether the last bridge is the first one again."""
 
@@ -89,8 +115,18 @@ class Triangulation:
         return int(np.count_nonzero(~self.valid[1:-1]))
 
     @property
+    def counted_invalid_count(self) -> int:
+        """Invalid interior bridges at which the strip bends: those that the objective counted."""
+        return int(np.count_nonzero(self.counted))
+
+    @property
+    def fold_back_count(self) -> int:
+        """Interior bridges at which the strip lies on itself: folds of 180 degrees."""
+        return int(np.count_nonzero(self.folded_back))
+
+    @property
     def inflection_count(self) -> int:
-        """Interior bridges that are invalid only because the bending changes sign there."""
+        """Interior bridges that are invalid only because the bending changes sign or is 0."""
         return int(np.count_nonzero(self.inflection))
 
 
@@ -102,55 +138,98 @@ def triangulate(
     search: Search = SEARCH,
     energy: Energy = ENERGY,
     planarity: float | None = None,
+    price: float | None = PRICE,
 ) -> Triangulation:
     """Returns the triangulation between two rails that is best by ordered criteria.
 
-    `search="global"` is the lexicographic optimum over all triangulations: ("invalid", "bending")
-    is GODT+GMBT of Wang and Tang, ("bending",) GMBT, ("area",) GMAT, ("length",) least total
-    bridge length. A criterion after one that is not a count only breaks exact ties. Just before
-    bending, triangles of zero area are counted. `search="local"` looks one step ahead: LODT+LMBT
-    if the criteria start with "invalid", LMBT if with "bending". Of equal continuations the P-step
-    is taken, always.
+    `search="global"` is the optimum over all triangulations, compared in this order: the fewest
+    fold-backs; the criteria, one after the other, where "invalid" counts the bridges that are not
+    locally convex and at which the strip bends, and triangles of zero area are counted just before
+    "bending"; the least total length of the bridges; the fewest invalid ones, bent or not. A
+    criterion after one that is not a count only breaks ties. ("bending",) is GMBT of Wang and
+    Tang, ("area",) GMAT.
+
+    With a price, criteria that begin with "invalid", "bending", and the hinge energy, one invalid
+    bridge is worth so many mean bending energies: the order is fold-backs, triangles of zero area,
+    `bending + price * least_bending / interior_count * counted invalid bridges`, later criteria,
+    length. With `price=None` it is GODT+GMBT: no energy buys an invalid bridge.
+
+    `search="local"` looks one step ahead: LODT+LMBT if the criteria start with "invalid", LMBT if
+    with "bending". Of equal continuations the P-step is taken, always; sums of energies, areas or
+    lengths are equal if they differ by no more than 1e-12 of themselves.
 
     Args:
-        p: (m, 3) float, mm; samples of directrix P, m >= 2.
-        q: (n, 3) float, mm; samples of directrix Q in the same direction, n >= 2.
+        p: (m, 3) float, mm; samples of directrix P. A single one (m = 1) is the apex of a cone.
+        q: (n, 3) float, mm; samples of directrix Q in the same direction; n >= 2 if m = 1.
         criteria: ordered choice of "invalid", "bending", "area", "length", each at most once.
         search: "global" or "local".
         energy: "hinge" or "paper", see folding.ENERGIES.
-        planarity: mm; how far a neighbour may lie on the wrong side of a valid bridge's plane;
-            by default a thousandth of the rails' median sagitta.
+        planarity: mm; how far a neighbour may lie on the wrong side of a valid bridge's plane, and
+            a triangle's third vertex from the plane of a coplanar one; by default a thousandth of
+            the rails' median sagitta.
+        price: what an invalid bridge more is worth, from 0 to 1e6, or None. Of no effect with other
+            criteria, with the paper's energy and in the local search.
 
     Raises:
-        InputError: a rail is no (k, 3) array of at least two finite points, the rails coincide over
-            more than one bank edge, all triangles have zero area, or an option is unknown.
+        InputError: a rail is no (k, 3) array of finite points, both are single points, the rails
+            coincide over more than one bank edge, all triangles have zero area, or an option is
+            unknown.
+
+    Example:
+        A square tent with a ridge along y: flat on either side of it.
+
+        >>> front, back = [[0, 0, 0], [1, 0, 1], [2, 0, 0]], [[0, 1, 0], [1, 1, 1], [2, 1, 0]]
+        >>> found = triangulate(front, back)
+        >>> found.fold.round(3).tolist(), found.counted_invalid_count
+        ([0.0, 1.571, 0.0], 0)
     """
     if energy not in ENERGIES:
         raise InputError(f"energy - {energy!r} - one of {', '.join(ENERGIES)} - choose one")
-    weights = weights_of(criteria)
-    names = (criteria,) if isinstance(criteria, str) else tuple(criteria)
+    names = checked_criteria(criteria)
+    has_price = search == "global" and energy == "hinge" and is_priced(names)
+    price = _checked_price(price) if has_price else None
     p, q = checked_rails(p, q)
     limit = checked_planarity(p, q, planarity)
-    nothing = round_off(p, q)
     check_rails_apart(p, q, limit)
-    steps = _search(
-        p, q, names, weights, search, planarity=limit, nothing=nothing, energy=ENERGIES[energy]
+    least = None if price is None else least_bending(p, q, planarity=limit, nothing=round_off(p, q))
+    cost = None if price is None or least is None else invalid_cost(price, *least)
+    steps = _search(p, q, names, search, ENERGIES[energy], planarity=limit, invalid_cost=cost)
+    return measured(
+        p,
+        q,
+        steps,
+        planarity=limit,
+        criteria=names,
+        search=search,
+        energy=energy,
+        price=price,
+        least_bending=None if least is None else least[0],
     )
-    return measured(p, q, steps, planarity=limit, criteria=names, search=search, energy=energy)
+
+
+def _checked_price(price: float | None) -> float | None:
+    if price is not None and not 0.0 <= price <= LARGEST_PRICE:
+        raise InputError(
+            f"price - {price} - a number from 0 to {LARGEST_PRICE:g}, or None, is needed"
+            " - None puts validity before any bending"
+        )
+    return None if price is None else float(price)
 
 
 def _search(
     p: Floats,
     q: Floats,
     criteria: tuple[Criterion, ...],
-    weights: Weights,
     search: Search,
+    energy: int,
     *,
     planarity: float,
-    nothing: float,
-    energy: int,
+    invalid_cost: float | None,
 ) -> Steps:
+    nothing = round_off(p, q)
     if search == "global":
+        count = p.shape[0] + q.shape[0]
+        weights = weights_of(criteria, bridge_count=count, invalid_cost=invalid_cost)
         return best_steps(p, q, weights, planarity=planarity, nothing=nothing, energy=energy)
     if search != "local":
         raise InputError(f"search - {search!r} - one of global, local - choose one")
@@ -178,6 +257,8 @@ def measured(
     criteria: tuple[Criterion, ...],
     search: Search,
     energy: Energy,
+    price: float | None = None,
+    least_bending: float | None = None,
 ) -> Triangulation:
     """Returns the triangulation that given steps make, with all its measures.
 
@@ -189,6 +270,8 @@ def measured(
         criteria: what the steps were chosen by.
         search: how they were searched.
         energy: "hinge" or "paper".
+        price: what an invalid bridge was worth, if it had a price.
+        least_bending: what that price was measured by.
 
     Raises:
         InputError: all triangles have zero area.
@@ -207,6 +290,8 @@ def measured(
         "steps": steps,
         "valid": path.valid,
         "inflection": inflection_bridges(path, coarser_sagitta(p, q)),
+        "counted": ~path.valid & path.is_bent,
+        "folded_back": path.is_folded_back,
         "fold": path.fold,
         "twist": fan_aware_twist(path),
         "bending_at": path.bending_at,
@@ -215,14 +300,16 @@ def measured(
         array.flags.writeable = False
     return Triangulation(
         **arrays,
-        bending=float(path.bending_at.sum()),
+        bending=math.fsum(path.bending_at),
         area=path.area,
-        length=float(path.view[0].sum()),
-        degenerate_count=path.degenerate_count,
+        length=math.fsum(path.view[0]),
+        degenerate_count=int(np.count_nonzero(path.is_flat)),
         planarity=planarity,
         criteria=criteria,
         search=search,
         energy=energy,
+        price=price,
+        least_bending=least_bending,
     )
 
 

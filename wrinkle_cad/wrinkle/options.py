@@ -46,6 +46,15 @@ class StripSettings:
     energy: settings.Energy = field(
         default=settings.ENERGY, metadata=option("how bending is measured")
     )
+    price: float | None = field(
+        default=settings.PRICE,
+        metadata=option(
+            "what one more locally convex bridge may cost, in mean bending energies of a bridge "
+            "where the strip bends least; none: any bending",
+            least=0.0,
+            most=settings.LARGEST_PRICE,
+        ),
+    )
 
     def __post_init__(self) -> None:
         check_options(self)

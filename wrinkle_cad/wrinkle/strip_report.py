@@ -83,7 +83,13 @@ class StripReport:
     invalid_bridges: int
     """Interior bridges that are not locally convex."""
     inflection_bridges: int
-    """Those of them where a developable surface changes the sign of its bending."""
+    """Those of them where a developable surface changes the sign of its bending, or is flat."""
+    counted_invalid_bridges: int
+    """Those of the invalid ones at which the strip bends: what the search counted."""
+    fold_backs: int
+    """Interior bridges at which the strip lies on itself: folds of 180 degrees."""
+    price: float | None
+    """What an invalid bridge more was worth, in mean bending energies; None where it had none."""
     invalid_length_p_mm: float
     """Length of P that bridges which are invalid, and no inflections, cover."""
     invalid_length_q_mm: float
@@ -177,6 +183,9 @@ def report_on(
         interior_bridges=triangulation.interior_count,
         invalid_bridges=triangulation.invalid_count,
         inflection_bridges=triangulation.inflection_count,
+        counted_invalid_bridges=triangulation.counted_invalid_count,
+        fold_backs=triangulation.fold_back_count,
+        price=triangulation.price,
         invalid_length_p_mm=p_invalid,
         invalid_length_q_mm=q_invalid,
         faces=face_count,

@@ -79,6 +79,7 @@ class WrinkleStrip(TriangulatedStrip):
             criteria=chosen.criteria,
             search=chosen.search,
             energy=chosen.energy,
+            price=chosen.price,
             planarity=(
                 settings.planarity_from(chosen.tolerance)
                 if chosen.planarity is None

@@ -538,6 +538,18 @@ def test_results_are_read_only_and_repeatable() -> None:
             array[0] = 0
 
 
+def test_a_rail_of_one_sample_unrolls_into_a_point() -> None:
+    ring = lambda t: np.stack((np.cos(t), np.sin(t), 0 * t), axis=1)  # noqa: E731
+    arc = sample_curve(ring, (0.0, 2.0), 1e-3)
+    apex = Samples(np.zeros(1), np.array([[0.0, 0.0, 1.0]]))
+    for p, q in ((arc, apex), (apex, arc)):
+        found = triangulate(p.points, q.points)
+        flat = unroll_cones(found, p, q, ring, ring, tolerance=1e-3)
+        assert flat.area == pytest.approx(np.sqrt(2.0), rel=1e-12)
+        assert sorted((flat.p_length, flat.q_length)) == pytest.approx([0.0, 2.0])
+        assert not flat.overlaps
+
+
 def test_wrong_input_is_refused() -> None:
     sampling = sampled(CYLINDER, 0.1)
     for tolerance in (0.0, -1.0, np.nan, np.inf):

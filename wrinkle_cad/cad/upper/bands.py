@@ -89,7 +89,13 @@ def _straight(start: Floats, end: Floats) -> TopoDS_Edge:
 
 
 def make_band(
-    opening: Opening, i: int, profile: Directrix, samples: Samples, *, tolerance: float
+    opening: Opening,
+    i: int,
+    profile: Directrix,
+    samples: Samples,
+    *,
+    tolerance: float,
+    price: float | None = None,
 ) -> Band | None:
     """Returns the band between one side of an opening and a profile, None if they coincide.
 
@@ -102,6 +108,8 @@ def make_band(
         profile: the wrinkle's rail along that side.
         samples: of the profile.
         tolerance: mm; chords of the side.
+        price: of the wrinkle, for an invalid bridge more (triangulate); the default one when None:
+            a band that folds to be more developable is of no use.
 
     Raises:
         InputError: the band has no width somewhere between its ends, or folds over.
@@ -117,20 +125,14 @@ def make_band(
     side_samples = samples_against(side, alone, samples.points, tolerance)
     rails = (profile, side) if i else (side, profile)
     sampled = (samples, side_samples) if i else (side_samples, samples)
-    triangulation = _triangulated(*sampled, settings.planarity_from(tolerance))
+    triangulation = triangulate(
+        *(one.points for one in sampled),
+        planarity=settings.planarity_from(tolerance),
+        price=settings.PRICE if price is None else price,
+    )
     _check_folds(triangulation, opening, i, width)
     shell = build_shell(triangulation, *rails, *sampled, settings.SURFACE)
     return Band(name, *rails, *sampled, triangulation, shell, width)
-
-
-def _triangulated(p: Samples, q: Samples, planarity: float) -> Triangulation:
-    """Returns the most developable band that does not buy its developability with sharp folds."""
-    found, least = (
-        triangulate(p.points, q.points, criteria=criteria, planarity=planarity)
-        for criteria in (settings.CRITERIA, ("bending",))
-    )
-    dear = found.bending > settings.BAND_BENDING_PRICE * least.bending
-    return least if dear else found
 
 
 def _distances(points: Floats, side: Directrix) -> Floats:

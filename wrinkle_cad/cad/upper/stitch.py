@@ -137,7 +137,7 @@ def _all_faces(
     faces = faces_of(openings[-1].body_shape)
     parts, bands = [BODY] * len(faces), list[Band]()
     for opening, strip in zip(openings, strips, strict=True):
-        name = strip.name
+        name, price = strip.name, strip.triangulation.price
         pieces: list[tuple[str, Sequence[TopoDS_Face]]] = [(name, faces_of(strip.topods_shell()))]
         ends = []
         for i, (edges, profile, samples) in enumerate(
@@ -147,7 +147,7 @@ def _all_faces(
             )
         ):
             ends.append(_side_ends(edges, profile, "PQ"[i]))
-            band = make_band(opening, i, profile, samples, tolerance=tolerance)
+            band = make_band(opening, i, profile, samples, tolerance=tolerance, price=price)
             if band is not None:
                 part = f"{name} band {band.name}"
                 bands.append(replace(band, name=part))

@@ -1,0 +1,77 @@
+"""What one invalid bridge more is worth in bending energy.
+
+The last bridges of a strip to become locally convex may cost folds of over 90 degrees. With a price
+the search minimises bending plus so much per invalid bridge, where so much is the price times the
+mean bending of the strip's least-bending triangulation. The mean is taken per bridge, so the price
+does not depend on the sampling; it is taken on rails of at most 250 samples, so it costs little.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import numpy.typing as npt
+
+from wrinkle_cad.settings import PRICE_SAMPLES
+
+from .folding import HINGE
+from .global_search import best_steps
+from .objective import weights_of
+from .path import walk
+
+Floats = npt.NDArray[np.float64]
+
+
+def thinned_rail(rail: Floats) -> Floats:
+    """Returns at most PRICE_SAMPLES samples of a rail: evenly chosen, its ends kept.
+
+    The reversed rail gives the same samples, reversed.
+
+    Args:
+        rail: (k, 3) float64, mm.
+
+    Example:
+        >>> import numpy as np
+        >>> len(thinned_rail(np.zeros((1000, 3)))), len(thinned_rail(np.zeros((7, 3))))
+        (250, 7)
+    """
+    last, room = rail.shape[0] - 1, PRICE_SAMPLES - 1
+    if last <= room:
+        return rail
+    first_half = np.arange(PRICE_SAMPLES // 2)
+    # The nearest sample, halves rounded up: in integers, and mirrored rather than rounded again.
+    chosen = (2 * first_half * last + room) // (2 * room)
+    thinned: Floats = rail[np.concatenate((chosen, last - chosen[::-1]))]
+    return thinned
+
+
+def least_bending(p: Floats, q: Floats, *, planarity: float, nothing: float) -> tuple[float, int]:
+    """Returns the least hinge energy of the strip, thinned where it is long, and its bridges.
+
+    Args:
+        p: (m, 3) float64, mm; checked samples of directrix P.
+        q: (n, 3) float64, mm; checked samples of directrix Q.
+        planarity: mm; see validity_matrix.
+        nothing: mm; a distance that is round-off.
+
+    Returns:
+        The least among all triangulations of the thinned strip with the fewest fold-backs and then
+        the fewest triangles of zero area; how many interior bridges they have.
+    """
+    p, q = thinned_rail(p), thinned_rail(q)
+    weights = weights_of(("bending",), bridge_count=p.shape[0] + q.shape[0])
+    steps = best_steps(p, q, weights, planarity=planarity, nothing=nothing, energy=HINGE)
+    path = walk(p, q, steps, planarity=planarity, nothing=nothing, energy=HINGE)
+    return math.fsum(path.bending_at), path.bending_at.size
+
+
+def invalid_cost(price: float, least: float, interior_count: int) -> float:
+    """Returns the bending energy that one invalid bridge is worth: 0 where nothing need bend.
+
+    Args:
+        price: in mean bending energies of a bridge.
+        least: bending energy of the least-bending triangulation.
+        interior_count: its interior bridges.
+    """
+    return price * least / interior_count if interior_count else 0.0
