@@ -60,7 +60,7 @@ def diagnose_python(version: tuple[int, ...]) -> Diagnosis:
     if PYTHON_FROM <= version < PYTHON_BELOW:
         return Diagnosis("Python", True, f"{found} ({platform.python_implementation()})")
     return Diagnosis(
-        "Python", False, f"{found} - 3.11 to 3.13 - make the virtual environment with one of these"
+        "Python", False, f"{found}: make the virtual environment with Python 3.11 to 3.13."
     )
 
 
@@ -70,7 +70,7 @@ def diagnose_library(name: str, package: str, load: Callable[[str], object]) -> 
         load(name)
     except OSError:
         advice = (
-            f"missing, the CAD kernel needs it - install it (Debian: apt-get install {package})"
+            f"missing, and the CAD kernel needs it: install it (Debian: apt-get install {package})."
         )
         return Diagnosis(name, False, advice)
     return Diagnosis(name, True, "found")
@@ -81,11 +81,13 @@ def diagnose_wheels(version_of: Callable[[str], str | None]) -> Diagnosis:
     found = {wheel: version for wheel in _KERNEL_WHEELS if (version := version_of(wheel))}
     listed = ", ".join(f"{wheel} {version}" for wheel, version in found.items())
     if not found:
-        return Diagnosis("OCP wheels", False, "none installed - pip install --upgrade wrinkle-cad")
+        return Diagnosis(
+            "OCP wheels", False, "none is installed: pip install --upgrade wrinkle-cad"
+        )
     if len({_series(version) for version in found.values()}) > 1:
         advice = (
-            f"{listed} overwrite each other - one series only - in a fresh environment install "
-            "either wrinkle-cad or wrinkle-cad[cadquery] (build123d below 0.13)"
+            f"{listed} overwrite each other. Only one series works: in a fresh environment install "
+            "either wrinkle-cad or wrinkle-cad[cadquery] (build123d below 0.13)."
         )
         return Diagnosis("OCP wheels", False, advice)
     return Diagnosis("OCP wheels", True, listed)
@@ -94,9 +96,9 @@ def diagnose_wheels(version_of: Callable[[str], str | None]) -> Diagnosis:
 def diagnose_build123d(version: str | None) -> Diagnosis:
     """Whether the installed build123d is one that the package is tested with."""
     if version is None:
-        return Diagnosis("build123d", False, "not installed - pip install 'build123d>=0.12,<0.14'")
+        return Diagnosis("build123d", False, "not installed: pip install 'build123d>=0.12,<0.14'")
     if _series(version) not in BUILD123D_SERIES:
-        advice = f"{version} - 0.12 or 0.13 - pip install 'build123d>=0.12,<0.14'"
+        advice = f"{version}, and only 0.12 and 0.13 work: pip install 'build123d>=0.12,<0.14'"
         return Diagnosis("build123d", False, advice)
     return Diagnosis("build123d", True, version)
 
@@ -120,7 +122,7 @@ def diagnose_kernel(python: str) -> Diagnosis:
     return Diagnosis(
         "CAD kernel",
         False,
-        f"does not load: {last} - see the lines above, else reinstall in a fresh environment",
+        f"does not load: {last}. See the lines above, else reinstall in a fresh environment.",
     )
 
 
@@ -130,8 +132,8 @@ def diagnose_cache(folders: tuple[Path, ...]) -> Diagnosis:
         if _is_writable(folder):
             return Diagnosis("compile cache", True, str(folder))
     advice = (
-        f"no writable folder among {', '.join(str(folder) for folder in folders)} - every start "
-        "compiles anew, up to a minute - set NUMBA_CACHE_DIR to a writable folder"
+        f"no writable folder among {', '.join(str(folder) for folder in folders)}: every start "
+        "compiles anew, up to a minute. Set NUMBA_CACHE_DIR to a writable folder."
     )
     return Diagnosis("compile cache", False, advice)
 

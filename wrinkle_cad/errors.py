@@ -1,6 +1,7 @@
 """Every error class of the package, and ``Finding`` for what does not stop a job.
 
-A message is one line: what - what was found, with its unit - the limit - what to do.
+A message is one line of sentences that a newcomer understands: what is wrong, what was found (with
+its unit), what is allowed, what to do.
 """
 
 from __future__ import annotations
@@ -21,7 +22,7 @@ class Finding:
     severity: Severity
     """``info``, ``warning`` or ``error``."""
     message: str
-    """One line: what - what was found, with its unit - the limit - what to do."""
+    """One line: what is wrong, what was found with its unit, what is allowed, what to do."""
 
 
 class WrinkleError(Exception):
@@ -41,11 +42,11 @@ class CadError(WrinkleError):
 
     Args:
         step: what was being done, in words a user knows ("sew the strip to the body").
-        message: what was found, the limit, what to do.
+        message: what was found, what is allowed, what to do; it goes on from a colon.
     """
 
     def __init__(self, step: str, message: str) -> None:
-        super().__init__(f"{step} - {message}")
+        super().__init__(f"Cannot {step}: {message}")
         self.step = step
         self.message = message
 
@@ -59,11 +60,11 @@ class ExportError(WrinkleError):
     Args:
         path: the file that was to be written.
         format: its format ("STEP", "STL", "DXF", ...).
-        message: what was found, what to do.
+        message: what was found, what to do; it goes on from a colon.
     """
 
     def __init__(self, path: Path, format: str, message: str) -> None:  # noqa: A002 - the field's word
-        super().__init__(f"write {format} {path.name} - {message}")
+        super().__init__(f"Cannot write {format} {path.name}: {message}")
         self.path = path
         self.format = format
         self.message = message

@@ -70,7 +70,7 @@ def run_batch_command(given: argparse.Namespace, keywords: Mapping[str, Any]) ->
 
 def _folder(given: argparse.Namespace) -> Path:
     if given.output_dir is None:
-        raise InputError("-o DIR - not given - a folder for the outputs - give one")
+        raise InputError("A batch needs a folder for its outputs: give one with -o DIR.")
     folder: Path = given.output_dir
     return folder
 
@@ -82,7 +82,7 @@ def _plan(
     for note in sources.notes:
         _say(sys.stderr, f"wrinkle-cad: {note}")
     if not sources.files:
-        raise InputError("input - no CAD file in the folders given - at least one - check the path")
+        raise InputError("There is no CAD file in what was given: check the paths.")
     common = {} if given.job is None else read_job_toml(given.job)
     return plan_batch(sources.files, folder, keywords=keywords, mask=given.name, common=common)
 
@@ -115,8 +115,8 @@ def _convert(given: argparse.Namespace, planned: tuple[PlannedJob, ...], folder:
     except KeyboardInterrupt:
         _say(
             sys.stderr,
-            f"interrupted - {counter.settled} of {len(planned)} files settled, nothing half-written"
-            " - run the same command again: it goes on where it stopped",
+            f"Interrupted: {counter.settled} of {len(planned)} files are settled, none is"
+            " half-written. Run the same command again: it goes on where it stopped.",
         )
         return INTERRUPTED
     _show_summary(given, summary)
@@ -130,15 +130,15 @@ def _crew(given: argparse.Namespace) -> Iterator[Crew]:
     if given.scheduler is None:
         if given.ship_bytes:
             raise InputError(
-                "--ship-bytes - without --scheduler - nowhere to ship to - leave it out"
+                "--ship-bytes needs --scheduler, else there is nowhere to ship to: leave it out."
             )
         yield make_crew(executor=None, **limits)
         return
     for name, value in limits.items():
         if value is not None:
             raise InputError(
-                f"--{name} {value:g} - together with --scheduler - the cluster's workers cannot be"
-                " held to it - set it up there, or leave it out"
+                f"--{name} is {value:g} together with --scheduler, and a cluster's workers cannot"
+                " be held to it: set it up there, and leave it out here."
             )
     from wrinkle_cad.batch.workers.cluster import cluster_executor
 

@@ -39,7 +39,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     try:
         code: int = given.command(given)
     except KeyboardInterrupt:
-        print("interrupted - nothing half-written", file=sys.stderr)
+        print("Interrupted: nothing is half-written.", file=sys.stderr)
         return INTERRUPTED
     except BrokenPipeError:
         # The reader of our output went away (`| head`); Python would complain once more at exit.
@@ -56,8 +56,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
 def _report_defect(kind: type[BaseException], error: BaseException, _: object) -> None:
     """One line for what no code foresaw; Python then exits with code 1."""
     print(
-        f"wrinkle-cad: defect in the program - {kind.__name__}: {error_words(error)} - run again"
-        " with --debug and report what it prints",
+        f"wrinkle-cad: This is a defect in the program ({kind.__name__}: {error_words(error)})."
+        " Run again with --debug and report what it prints.",
         file=sys.stderr,
     )
 

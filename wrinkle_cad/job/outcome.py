@@ -44,7 +44,7 @@ class JobFailed:
     error: str
     """Name of the error's class."""
     message: str
-    """One line: what - what was found, with its unit - the limit - what to do."""
+    """One line: what is wrong, what was found with its unit, what is allowed, what to do."""
     seconds: Mapping[str, float] = field(default_factory=dict)
     """Wall-clock seconds by phase."""
     trace: str = ""

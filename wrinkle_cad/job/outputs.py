@@ -41,14 +41,14 @@ def check_outputs_are_ours(job: Job, kinds: tuple[str, ...]) -> None:
             continue
         if path.exists() and job.input.exists() and path.samefile(job.input):
             raise JobError(
-                f"output {path.name} - would replace the input {job.input.name} - outputs go to"
-                " another folder or name - give -o DIR or --name"
+                f"Output {path.name} would replace the input {job.input.name}: give another folder"
+                " (-o DIR) or another --name."
             )
         if not _is_ours(path, listed):
             raise JobError(
-                f"output {path.name} - a file of that name is there and was not written by this"
-                f" program, or was changed since - only own outputs are replaced - move it away or"
-                " give another -o DIR"
+                f"Output {path.name} cannot be written: a file of that name is there and was not"
+                " written by this program, or was changed since. Only own outputs are replaced:"
+                " move it away, or give another -o DIR."
             )
 
 
@@ -73,7 +73,7 @@ def outputs_together(job: Job, kinds: tuple[str, ...]) -> Iterator[dict[str, Pat
         job.output_dir.mkdir(parents=True, exist_ok=True)
         aside = Path(tempfile.mkdtemp(prefix=".wrinkle_cad-", dir=job.output_dir))
     except OSError as error:
-        message = f"{error.strerror or error} - a folder that can be written - give another -o DIR"
+        message = f"{error.strerror or error}. Give a folder that can be written with -o DIR."
         raise ExportError(job.output_dir, "folder", message) from error
     try:
         written = {kind: aside / f"{job.name}.{kind}" for kind in kinds}

@@ -55,9 +55,10 @@ def run_job(job: Job, *, progress: Progress | None = None) -> JobDone | JobFaile
 
 def _one_line_of(error: Exception, job: Job) -> str:
     if isinstance(error, MemoryError):
-        return f"{job.input.name} - ran out of memory - give a larger --tolerance"
+        return f"{job.input.name} needs more memory than there is: give a larger --tolerance."
     if isinstance(error, OSError) and not isinstance(error, WrinkleError):
-        return f"{job.input.name} - {error.strerror or error} - correct and run again"
+        reason = error.strerror or error
+        return f"{job.input.name} cannot be done ({reason}): correct this and run again."
     return error_words(error)
 
 
@@ -117,8 +118,8 @@ def _make(job: Job, chosen: Chosen, clock: PhaseClock) -> Made:
 def _check_no_waves(job: Job) -> None:
     if job.waves is not None:
         raise JobError(
-            f"waves - {job.input.name} has no upper to stand on - a shell or face named 'upper' -"
-            " add it, name it with --upper, or leave --waves and --height out"
+            f"The waves have no upper to stand on: {job.input.name} has no shell or face named"
+            " 'upper'. Add it, choose one with --upper, or leave --waves and --height out."
         )
 
 
@@ -142,19 +143,19 @@ def findings_on(strip: TriangulatedStrip, report: StripReport) -> Iterator[Findi
         yield Finding(
             "area-uncertain",
             "warning",
-            f"{report.name} - two integrations of its area differ by up to"
-            f" {strip.area_error:.0e} of it - {settings.AREA_RELATIVE_ERROR:.0e} in a smooth strip"
-            " - look for kinks in its rails",
+            f"The area of {report.name} is uncertain: two integrations differ by up to"
+            f" {strip.area_error:.0e} of it, in a smooth strip by"
+            f" {settings.AREA_RELATIVE_ERROR:.0e} at most. Look for kinks in its rails.",
         )
     invalid = report.invalid_bridges - report.inflection_bridges
     if invalid:
         yield Finding(
             "not-developable",
             "warning",
-            f"{report.name} - {invalid} of {report.interior_bridges} bridges are not locally"
-            f" convex, along {report.invalid_length_p_mm:.1f} mm of P and"
-            f" {report.invalid_length_q_mm:.1f} mm of Q - 0 in a developable strip - the sheet"
-            " must stretch there, or change a rail",
+            f"{report.name} is not developable: {invalid} of {report.interior_bridges} bridges are"
+            f" not locally convex, along {report.invalid_length_p_mm:.1f} mm of P and"
+            f" {report.invalid_length_q_mm:.1f} mm of Q. The sheet must stretch there, or a rail"
+            " must change.",
         )
 
 

@@ -58,8 +58,8 @@ class WrinkledUpper:
             Finding(
                 "rail-off-upper",
                 "info",
-                f"{strip.name} - {rail} was {distance:.3f} mm from the upper at most -"
-                f" {settings.RAIL_OFF_UPPER:g} mm is the limit - it was projected onto it",
+                f"{rail} of {strip.name} lay up to {distance:.3f} mm from the upper and was"
+                f" projected onto it; up to {settings.RAIL_OFF_UPPER:g} mm is allowed.",
             )
             for opening, strip in zip(self.openings, self.strips, strict=True)
             for rail, distance in zip("PQ", opening.distances, strict=True)

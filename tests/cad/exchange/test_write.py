@@ -211,9 +211,9 @@ def test_a_shape_that_the_kernel_cannot_write_is_an_error_that_names_it(tmp_path
 
 
 def test_a_folder_that_does_not_exist_is_an_export_error(tmp_path: Path) -> None:
-    with pytest.raises(ExportError, match=r"write STEP a.step - No such file"):
+    with pytest.raises(ExportError, match=r"write STEP a.step: No such file"):
         write_step(tmp_path / "no" / "a.step", [Part(arc(0.0))])
-    with pytest.raises(ExportError, match=r"write STL a.stl - No such file"):
+    with pytest.raises(ExportError, match=r"write STL a.stl: No such file"):
         write_stl(tmp_path / "no" / "a.stl", box())
 
 
