@@ -25,7 +25,7 @@ def faulty_job(job: Job, *, progress: object = None) -> JobDone | JobFailed:
         if phase != moment:
             return
         if fault == "cad":
-            raise CadError("injected", phase)
+            raise CadError("do it", phase)
         if fault == "memory":
             np.ones(1 << 40)
         if fault in signal.Signals.__members__:

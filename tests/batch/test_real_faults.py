@@ -26,7 +26,7 @@ def test_a_fault_in_any_phase_of_the_real_job_costs_one_file(bench: Bench) -> No
     }
     for phase in PHASES:
         record = records[f"cad-{phase}"]
-        assert (record.phase, record.message) == (phase, f"injected - {phase}")
+        assert (record.phase, record.message) == (phase, f"Cannot do it: {phase}")
     for room in ROOMS:
         assert records[f"room-{room}"].phase in ("write", "page")
     assert [records[name].error for name in CRASHES] == [

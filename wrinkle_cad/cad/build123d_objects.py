@@ -41,7 +41,7 @@ def to_build123d(
         try:
             result.color = Color(color)
         except ValueError as error:
-            raise InputError(f"color - {color!r} - a color's name is needed - {error}") from error
+            raise InputError(f"{color!r} is no color's name: {error}.") from error
     elif color is not None:
         result.color = Color(occ_color(color))
     return result
@@ -72,18 +72,18 @@ def _polygon_face(corners: np.ndarray[Any, np.dtype[np.float64]]) -> TopoDS_Face
 
     if corners.ndim != 2 or corners.shape[1] != 2 or not np.isfinite(corners).all():
         raise InputError(
-            f"outline - an array of shape {corners.shape} - finite (k, 2) corners in mm are needed"
+            f"The outline is an array of shape {corners.shape}. Pass finite (k, 2) corners in mm."
         )
     moves = np.linalg.norm(corners - np.roll(corners, 1, axis=0), axis=1)
     corners = corners[moves > 0.0]
     if len(corners) < 3:
-        raise InputError(f"outline - {len(corners)} corners - at least 3 are needed")
+        raise InputError(f"The outline has {len(corners)} corners, at least 3 are needed.")
     x, y = corners.T
     if (x * np.roll(y, -1)).sum() < (y * np.roll(x, -1)).sum():
         corners = corners[::-1]
     # The kernel's own check takes 16 s for 4,000 corners.
     if not Polygon(corners).is_valid:
-        raise CadError("make a sketch", "the outline crosses itself - cut the pattern into pieces")
+        raise CadError("make a sketch", "the outline crosses itself. Cut the pattern into pieces.")
     with kernel_step("make a sketch"):
         polygon = BRepBuilderAPI_MakePolygon()
         for x_at, y_at in corners.tolist():
@@ -91,5 +91,7 @@ def _polygon_face(corners: np.ndarray[Any, np.dtype[np.float64]]) -> TopoDS_Face
         polygon.Close()
         maker = BRepBuilderAPI_MakeFace(gp_Pln(), polygon.Wire(), True)
         if not maker.IsDone():
-            raise CadError("make a sketch", f"status {maker.Error()} - check the outline")
+            raise CadError(
+                "make a sketch", f"the CAD kernel says {maker.Error()}. Check the outline."
+            )
         return maker.Face()

@@ -95,7 +95,7 @@ def test_an_exception_in_any_phase_costs_one_file(bench: Bench) -> None:
         assert (bug.error, bug.phase) == ("ZeroDivisionError", phase)
         assert "one two" in bug.message
         assert (failure.error, failure.phase) == ("InputError", phase)
-    assert records["cad"].message == "sew - left open"
+    assert records["cad"].message == "Cannot sew: left open"
     assert not any("\n" in record.message for record in records.values())
 
 

@@ -106,13 +106,13 @@ def test_the_public_profiles_are_build123d_edges() -> None:
 @pytest.mark.parametrize(
     ("options", "message"),
     [
-        ({"waves": 0, "height": 1.0}, "waves - found 0 on P"),
-        ({"waves": 500, "height": 1.0}, "waves - found 500"),
-        ({"waves": 5, "height": np.nan}, "height - found nan"),
-        ({"waves": 5, "height": 1.0, "fade": 0.6}, "fade - found 0.6"),
-        ({"waves": 5, "height": 1.0, "side": "up"}, "side - found 'up'"),
-        ({"waves": 5, "height": 1.0, "phase": np.inf}, "phase - found inf"),
-        ({"waves": 5, "height": lambda arc: arc[:-1]}, "callable returned shape"),
+        ({"waves": 0, "height": 1.0}, "waves is 0 on P"),
+        ({"waves": 500, "height": 1.0}, "waves is 500"),
+        ({"waves": 5, "height": np.nan}, "height is nan"),
+        ({"waves": 5, "height": 1.0, "fade": 0.6}, "fade is 0.6"),
+        ({"waves": 5, "height": 1.0, "side": "up"}, "side is 'up'"),
+        ({"waves": 5, "height": 1.0, "phase": np.inf}, "phase is inf"),
+        ({"waves": 5, "height": lambda arc: arc[:-1]}, "callable height returned shape"),
         ({"waves": 5, "height": lambda arc: arc * np.nan}, "values not finite"),
     ],
 )

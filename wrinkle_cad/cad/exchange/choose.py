@@ -114,12 +114,12 @@ def _one_rail(cad_file: CadFile, strip: str, rail: str, found: list[NamedShape])
         raise _fail(
             cad_file,
             f"no curve is called '{wanted}', its counterpart is there; found"
-            f" {_listed(cad_file.curves())} - name it or choose with --p and --q",
+            f" {_listed(cad_file.curves())}. Name it or choose with --p and --q.",
         )
     raise _fail(
         cad_file,
-        f"{len(fits)} curves are called '{wanted}': {_listed(fits)} - join them to one wire,"
-        " or choose with --p and --q",
+        f"{len(fits)} curves are called '{wanted}': {_listed(fits)}. Join them to one wire, or"
+        " choose with --p and --q.",
     )
 
 
@@ -140,18 +140,18 @@ def _wrong_count(cad_file: CadFile, curves: Sequence[NamedShape]) -> InputError:
         return _fail(
             cad_file,
             f"no curves: the file holds {_summary(cad_file)}, a strip needs two free edges or"
-            " wires P and Q - add them to the file",
+            " wires P and Q. Add them to the file.",
         )
     if len(curves) == 1:
         return _fail(
             cad_file,
             f"only one curve: {curves[0]}, a strip needs two free edges or wires P and Q"
-            " - add the other one to the file",
+            ". Add the other one to the file.",
         )
     return _fail(
         cad_file,
-        f"{len(curves)} free curves and none is called P or Q: {_listed(curves)}"
-        " - choose two with --p and --q, or name them",
+        f"{len(curves)} free curves and none is called P or Q: {_listed(curves)}."
+        " Choose two with --p and --q, or name them.",
     )
 
 
@@ -167,10 +167,10 @@ def _strip_by_hand(
             raise _fail(
                 cad_file,
                 f"--{option} chooses {rail}, a rail is an edge or a wire; found"
-                f" {_listed(cad_file.curves()) or 'no curves'} - choose one of these",
+                f" {_listed(cad_file.curves()) or 'no curves'}. Choose one of these.",
             )
     if rail_p is rail_q:
-        raise _fail(cad_file, f"--p and --q both choose {rail_p} - choose two curves")
+        raise _fail(cad_file, f"--p and --q both choose {rail_p}. Choose two curves.")
     role = rail_role(rail_p.name)
     name = (role[0] if role else "") or settings.STRIP_NAME
     reasons = [
@@ -196,7 +196,7 @@ def _counterpart(cad_file: CadFile, other: NamedShape | None, rail: str) -> Name
     raise _fail(
         cad_file,
         f"only one rail is chosen; {rail} could be {_listed(rest) or 'none of the shapes'}"
-        f" - choose it with --{rail.lower()}",
+        f". Choose it with --{rail.lower()}.",
     )
 
 
@@ -216,12 +216,12 @@ def _picked(cad_file: CadFile, text: str, option: str) -> NamedShape:
             raise _fail(
                 cad_file,
                 f"--{option} '{wanted}' means {len(suited)} shapes: {_listed(suited)}"
-                " - choose by index",
+                ". Choose by index.",
             )
     raise _fail(
         cad_file,
         f"--{option} '{wanted}' is neither a name nor an index; found {_listed(shapes)}"
-        " - choose one of these",
+        ". Choose one of these.",
     )
 
 
@@ -231,7 +231,7 @@ def _upper(
     if upper is not None:
         chosen = _picked(cad_file, upper, UPPER)
         if chosen.is_curve or chosen.measure <= 0.0:
-            raise _fail(cad_file, f"--upper chooses {chosen}, an upper has faces - choose another")
+            raise _fail(cad_file, f"--upper chooses {chosen}, an upper has faces. Choose another.")
         return chosen, f"upper is {chosen}, as chosen"
     named = [
         shape
@@ -249,7 +249,7 @@ def _upper(
     several = fits or list(surfaces)
     raise _fail(
         cad_file,
-        f"{len(several)} shapes could be the upper: {_listed(several)} - choose with --upper",
+        f"{len(several)} shapes could be the upper: {_listed(several)}. Choose with --upper.",
     )
 
 
@@ -274,4 +274,4 @@ def _summary(cad_file: CadFile) -> str:
 
 def _fail(cad_file: CadFile, found: str) -> InputError:
     note = " (the file is gzip-compressed and was unpacked)" if cad_file.is_compressed else ""
-    return InputError(f"choose curves in {cad_file.path.name} - {found}{note}")
+    return InputError(f"Cannot choose curves in {cad_file.path.name}{note}: {found}")

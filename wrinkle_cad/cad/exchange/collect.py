@@ -138,7 +138,7 @@ def _check_extent(source: Source, shape: TopoDS_Shape, name: str) -> None:
     if not reach <= settings.LARGEST_COORDINATE:
         raise source.fail(
             f"damaged: {kind_name(shape)} '{name}' reaches to {reach:.3g} mm,"
-            f" the limit is {settings.LARGEST_COORDINATE:.3g} mm - check the numbers and the unit"
+            f" the limit is {settings.LARGEST_COORDINATE:.3g} mm. Check the numbers and the unit."
         )
 
 

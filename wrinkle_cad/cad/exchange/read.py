@@ -38,7 +38,7 @@ def read_cad(
         CadError: the kernel cannot be loaded.
     """
     if unit is not None and unit not in MM_PER_UNIT:
-        raise InputError(f"unit - found {unit!r} - one of {', '.join(MM_PER_UNIT)}")
+        raise InputError(f"The unit is {unit!r}. Choose one of {', '.join(MM_PER_UNIT)}.")
     source = read_source(Path(path), size_limit=size_limit)
     with kernel_importable():
         from . import read_brep, read_iges, read_step

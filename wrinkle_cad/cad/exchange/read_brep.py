@@ -42,7 +42,7 @@ def read(source: Source, unit: str | None) -> CadFile:
     shape = _shape(source, is_binary=is_binary)
     shapes = listed(source, take_apart(shape), check_unit(source, (), unit))
     if not shapes:
-        raise source.fail("no geometry: the shape in it is empty - save it again")
+        raise source.fail("no geometry: the shape in it is empty. Save it again.")
     return CadFile(source.path, BREP, unit_words((), unit), shapes, source.is_compressed)
 
 
@@ -51,7 +51,7 @@ def _check_text(source: Source) -> None:
     missing = [name.decode() for name in _SECTIONS if b"\n" + name + b" " not in text]
     if missing or not _LAST_LINE.search(text[-4096:]):
         what = f"section {missing[0]} is missing" if missing else "its last line is missing"
-        raise source.fail(f"truncated: {what} - copy or save it again")
+        raise source.fail(f"truncated: {what}. Copy or save it again.")
 
 
 def _shape(source: Source, *, is_binary: bool) -> TopoDS_Shape:
@@ -64,7 +64,11 @@ def _shape(source: Source, *, is_binary: bool) -> TopoDS_Shape:
         else:
             BRepTools.Read_s(shape, io.BytesIO(content.replace(b"\r", b"\n")), BRep_Builder())
     except KERNEL_ERRORS as error:
-        raise source.fail(f"damaged: the CAD kernel fails on it ({error_words(error)})") from error
+        raise source.fail(
+            f"damaged: the CAD kernel fails on it ({error_words(error)}). Export it again."
+        ) from error
     if shape.IsNull():
-        raise source.fail("damaged: not readable as BREP although its frame is whole")
+        raise source.fail(
+            "damaged: not readable as BREP although its frame is whole. Export it again."
+        )
     return shape

@@ -59,7 +59,7 @@ def read(source: Source, unit: str | None) -> CadFile:
     ]
     shapes = listed(source, found, 1.0)
     if not shapes:
-        raise source.fail("no geometry: no curve, face or solid in it - export it again")
+        raise source.fail("no geometry: no curve, face or solid in it. Export it again.")
     words = unit_words(declared, unit)
     return CadFile(source.path, IGES, words, shapes, source.is_compressed)
 
@@ -70,12 +70,12 @@ def _check_records(source: Source, text: bytes) -> None:
     counted = Counter(letters)
     last = [line for line in text.split(b"\n") if line[72:73] == b"T"]
     if not last:
-        raise source.fail("truncated: the terminate record is missing - copy or export it again")
+        raise source.fail("truncated: the terminate record is missing. Copy or export it again.")
     for section, count in _COUNT.findall(last[-1][:72]):
         if counted[section] != int(count):
             raise source.fail(
                 f"truncated: {counted[section]} records in section {section.decode()},"
-                f" {int(count)} are declared - copy or export it again"
+                f" {int(count)} are declared. Copy or export it again."
             )
 
 
@@ -120,7 +120,11 @@ def _leaves(source: Source, text: bytes) -> list[Leaf]:
                 is_read = reader.ReadFile(str(copy)) == IFSelect_RetDone
                 is_whole = is_read and reader.Transfer(document)
         if not is_read:
-            raise source.fail("damaged: not readable as IGES although its records are whole")
+            raise source.fail(
+                "damaged: not readable as IGES although its records are whole. Export it again."
+            )
         return leaves_of(document) if is_whole else []
     except KERNEL_ERRORS as error:
-        raise source.fail(f"damaged: the CAD kernel fails on it ({error_words(error)})") from error
+        raise source.fail(
+            f"damaged: the CAD kernel fails on it ({error_words(error)}). Export it again."
+        ) from error

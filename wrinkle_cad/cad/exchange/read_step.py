@@ -47,7 +47,7 @@ def read(source: Source, unit: str | None) -> CadFile:
     check_step(source, text)
     fault = link_fault(text)
     if fault is not None:
-        raise source.fail(f"damaged: {fault} - export it again")
+        raise source.fail(f"damaged: {fault}. Export it again.")
     declared = length_units(text)
     mm_per_unit = check_unit(source, declared, unit)
     leaves = _leaves(source, text)
@@ -70,12 +70,16 @@ def _leaves(source: Source, text: bytes) -> list[Leaf]:
             {"xstep.cascade.unit": "MM", "read.stepcaf.subshapes.name": has_names}
         ):
             if reader.ReadStream(source.path.name, io.BytesIO(text)) != IFSelect_RetDone:
-                raise source.fail("damaged: not readable as STEP although its frame is whole")
+                raise source.fail(
+                    "damaged: not readable as STEP although its frame is whole. Export it again."
+                )
             if reader.NbRootsForTransfer() == 0 or not reader.Transfer(document):
                 return []
         return leaves_of(document)
     except KERNEL_ERRORS as error:
-        raise source.fail(f"damaged: the CAD kernel fails on it ({error_words(error)})") from error
+        raise source.fail(
+            f"damaged: the CAD kernel fails on it ({error_words(error)}). Export it again."
+        ) from error
 
 
 def _found(leaves: list[Leaf], text: bytes) -> list[Found]:

@@ -59,7 +59,7 @@ class Source:
     def fail(self, found: str) -> InputError:
         """Returns the error that names this file and, if it was compressed, says so."""
         note = " (the file is gzip-compressed and was unpacked)" if self.is_compressed else ""
-        return InputError(f"read {self.path.name} - {found}{note}")
+        return InputError(f"Cannot read {self.path.name}{note}: {found}")
 
 
 def read_source(path: Path, *, size_limit: int = settings.FILE_SIZE_LIMIT) -> Source:
@@ -81,11 +81,13 @@ def read_source(path: Path, *, size_limit: int = settings.FILE_SIZE_LIMIT) -> So
     content = _unpack(path, packed, size_limit) if is_compressed else packed
     content = _without_mark(content)
     if not content.strip():
-        raise InputError(f"read {path.name} - the file is empty - export it again from its CAD")
+        raise InputError(
+            f"Cannot read {path.name}: the file is empty. Export it again from its CAD."
+        )
     if content.startswith(_POINTER):
         raise InputError(
-            f"read {path.name} - a git-LFS pointer file, the CAD file itself was never fetched"
-            " - run 'git lfs pull' where it came from"
+            f"Cannot read {path.name}: a git-LFS pointer file, the CAD file itself was never"
+            " fetched. Run 'git lfs pull' where it came from."
         )
     return Source(path, _format_of(path, content), content, is_compressed)
 
@@ -97,20 +99,20 @@ def _read(path: Path, size_limit: int) -> bytes:
             raise _too_large(path, f"{found.st_size / 2**20:.1f} MiB", size_limit)
         if not stat.S_ISREG(found.st_mode):
             what = "a directory" if stat.S_ISDIR(found.st_mode) else "not a regular file"
-            raise InputError(f"read {path.name} - {what} - name a STEP, BREP or IGES file")
+            raise InputError(f"Cannot read {path.name}: {what}. Name a STEP, BREP or IGES file.")
         with path.open("rb") as stream:
             return stream.read(size_limit)
     except (OSError, ValueError) as error:
         if isinstance(error, InputError):
             raise
         reason = getattr(error, "strerror", None) or str(error)
-        raise InputError(f"read {path.name} - {reason} - check the path") from error
+        raise InputError(f"Cannot read {path.name}: {reason}. Check the path.") from error
 
 
 def _too_large(path: Path, found: str, size_limit: int) -> InputError:
     return InputError(
-        f"read {path.name} - {found} large, the limit is {size_limit / 2**20:.1f} MiB"
-        " - export only the curves and the upper, or raise the limit"
+        f"Cannot read {path.name}: {found} large, the limit is {size_limit / 2**20:.1f} MiB."
+        " Export only the curves and the upper, or raise the limit."
     )
 
 
@@ -128,13 +130,13 @@ def _unpack(path: Path, packed: bytes, size_limit: int) -> bytes:
                 )
             if not stream.eof:
                 raise InputError(
-                    f"read {path.name} - gzip-compressed and cut short after"
-                    f" {len(packed)} bytes - copy or download the file again"
+                    f"Cannot read {path.name}: gzip-compressed and cut short after"
+                    f" {len(packed)} bytes. Copy or download the file again."
                 )
             rest = stream.unused_data
     except zlib.error as error:
         raise InputError(
-            f"read {path.name} - gzip-compressed and damaged ({error}) - copy the file again"
+            f"Cannot read {path.name}: gzip-compressed and damaged ({error}). Copy the file again."
         ) from error
     return bytes(content)
 
@@ -160,10 +162,10 @@ def _format_of(path: Path, content: bytes) -> str:
         return IGES
     for pattern, what in _STRANGERS:
         if pattern.match(head):
-            raise InputError(f"read {path.name} - not STEP, BREP or IGES: {what}")
+            raise InputError(f"Cannot read {path.name}: not STEP, BREP or IGES: {what}.")
     start = " ".join(head[:40].decode("ascii", "replace").split())
     shown = "".join(letter if letter.isprintable() else "?" for letter in start)
     raise InputError(
-        f"read {path.name} - not a STEP, BREP or IGES file: {len(content)} bytes that start with"
-        f" '{shown}' - export the curves as STEP"
+        f"Cannot read {path.name}: not a STEP, BREP or IGES file: {len(content)} bytes that start"
+        f" with '{shown}'. Export the curves as STEP."
     )

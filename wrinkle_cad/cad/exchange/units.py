@@ -32,8 +32,8 @@ def check_unit(source: Source, declared: tuple[str, ...], unit: str | None) -> f
         return MM_PER_UNIT[unit or settings.FILE_UNIT]
     if unit is not None and declared != (unit,):
         raise source.fail(
-            f"the file declares its unit as {' and '.join(declared)}, {unit} was given"
-            " - leave --unit away, it is for files that declare none"
+            f"the file declares its unit as {' and '.join(declared)}, {unit} was given."
+            " Leave --unit away, it is for files that declare none."
         )
     return 1.0
 

@@ -74,7 +74,7 @@ def write_step(
         content = step_bytes(parts, header, schema=schema)
         write_atomically(path, content)
     except CadError as error:
-        raise ExportError(path, "STEP", str(error)) from error
+        raise ExportError(path, "STEP", error.message) from error
     except OSError as error:
         raise _disk_error(path, "STEP", error) from error
 
@@ -89,9 +89,11 @@ def step_bytes(
             cannot write a shape.
     """
     if schema not in _SCHEMAS:
-        raise CadError("write STEP", f"schema {schema!r} - one of {', '.join(_SCHEMAS)}")
+        raise CadError(
+            "write STEP", f"the schema is {schema!r}. Choose one of {', '.join(_SCHEMAS)}."
+        )
     if not parts:
-        raise CadError("write STEP", "no shapes - at least one is needed")
+        raise CadError("write STEP", "there are no shapes. Pass at least one.")
     ordered = [_with_faces_in_order(part) for part in parts]
     silence_kernel()
     with kernel_step("write STEP"):
@@ -112,20 +114,20 @@ def _with_faces_in_order(part: Part) -> Part:
     """
     name = one_line(part.name)
     if part.shape.IsNull():
-        raise CadError("write STEP", f"part '{name}' is empty - leave it out")
+        raise CadError("write STEP", f"part '{name}' is empty. Leave it out.")
     if not part.faces:
         return part
     if part.shape.ShapeType() == TopAbs_FACE:
         raise CadError(
-            "write STEP", f"part '{name}' is one face - name and color the part, not its face"
+            "write STEP", f"part '{name}' is one face. Name and color the part, not its face."
         )
     held = ShapeIndex(faces_of(part.shape))
     strange = sum(held.find(style.face) < 0 for style in part.faces)
     if strange:
         raise CadError(
             "write STEP",
-            f"{strange} of {len(part.faces)} named or colored faces are not in part '{name}' -"
-            " all must be - take them from its shape",
+            f"{strange} of {len(part.faces)} named or colored faces are not in part '{name}'."
+            " Take them from its shape.",
         )
     (faces,) = styles_in([part.shape], part.faces)
     return replace(part, faces=faces)
@@ -145,9 +147,9 @@ def _kernel_text(parts: Sequence[Part], schema: str) -> bytes:
     stream = io.BytesIO()
     with kernel_parameters({"write.step.schema": schema, **_PARAMETERS}):
         if not writer.Transfer(document, STEPControl_AsIs):
-            raise CadError("write STEP", "the CAD kernel cannot translate the shapes")
+            raise CadError("write STEP", "the CAD kernel cannot translate the shapes. Check them.")
         if writer.WriteStream(stream) != IFSelect_RetDone:
-            raise CadError("write STEP", "the CAD kernel cannot write the shapes")
+            raise CadError("write STEP", "the CAD kernel cannot write the shapes. Check them.")
     return stream.getvalue()
 
 
@@ -198,7 +200,7 @@ def write_stl(
         content = stl_bytes(shape, tolerance=tolerance, angular_tolerance=angular_tolerance)
         write_atomically(path, content)
     except CadError as error:
-        raise ExportError(path, "STL", str(error)) from error
+        raise ExportError(path, "STL", error.message) from error
     except OSError as error:
         raise _disk_error(path, "STL", error) from error
 
@@ -215,14 +217,16 @@ def stl_bytes(
         CadError: there are no faces, or the kernel cannot mesh them.
     """
     if not faces_of(shape):
-        raise CadError("mesh the shape", "it has no faces - pass a face, shell or solid")
+        raise CadError("mesh the shape", "it has no faces. Pass a face, shell or solid.")
     silence_kernel()
     points, triangles = mesh_of(shape, tolerance=tolerance, angular_tolerance=angular_tolerance)
     if not len(triangles):
-        raise CadError("mesh the shape", "the CAD kernel made no triangles - check the shape")
+        raise CadError("mesh the shape", "the CAD kernel made no triangles. Check the shape.")
     return binary_stl(points, triangles)
 
 
 def _disk_error(path: Path, form: str, error: OSError) -> ExportError:
     reason = error.strerror or type(error).__name__
-    return ExportError(path, form, f"{reason} - nothing was written - free space or another folder")
+    return ExportError(
+        path, form, f"{reason}. Nothing was written: free some space or choose another folder."
+    )

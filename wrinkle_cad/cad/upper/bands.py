@@ -164,9 +164,10 @@ def _check_open(profile: Directrix, side: Directrix, width: float, name: str) ->
     if narrow.any():
         at = 1 + int(np.flatnonzero(narrow)[inner[narrow].argmin()])
         raise InputError(
-            f"profile {name} - it touches the opening's boundary at {parameters[at]:.4g} mm along"
-            f" it ({gaps[at]:.1e} mm) and leaves it by {width:.3g} mm elsewhere - a band has no"
-            " width at its two ends only - carve with a margin, or keep the profile on the boundary"
+            f"Profile {name} touches the opening's boundary at {parameters[at]:.4g} mm along it"
+            f" ({gaps[at]:.1e} mm) and leaves it by {width:.3g} mm elsewhere. A band may have no"
+            " width at its two ends only: carve with a margin, or keep the profile on the"
+            " boundary."
         )
 
 
@@ -174,17 +175,17 @@ def _check_folds(triangulation: Triangulation, opening: Opening, i: int, width: 
     name, share = "PQ"[i], _overhang(triangulation, opening, i)
     if share > settings.BAND_OVERHANG_LIMIT:
         raise InputError(
-            f"band along {name} - up to {width:.3g} mm wide, {share:.0%} of it folds over: it faces"
-            f" into the upper - {settings.BAND_OVERHANG_LIMIT:.0%} is the limit - lower the waves,"
-            " take fewer of them or a wider margin"
+            f"The band along {name} is up to {width:.3g} mm wide and {share:.0%} of it folds over:"
+            f" it faces into the upper. At most {settings.BAND_OVERHANG_LIMIT:.0%} may: lower the"
+            " waves, take fewer of them or a wider margin."
         )
     fold = np.abs(triangulation.fold)
     worst = float(fold.max(initial=0.0))
     if worst > settings.BAND_FOLD_LIMIT:
         raise InputError(
-            f"band along {name} - up to {width:.3g} mm wide, it folds over by"
-            f" {np.degrees(worst):.0f} degrees - {np.degrees(settings.BAND_FOLD_LIMIT):.0f} is the"
-            " limit - lower the waves, take fewer of them or a wider margin"
+            f"The band along {name} is up to {width:.3g} mm wide and folds over by"
+            f" {np.degrees(worst):.0f} degrees, at most {np.degrees(settings.BAND_FOLD_LIMIT):.0f}"
+            " are allowed. Lower the waves, take fewer of them or a wider margin."
         )
 
 

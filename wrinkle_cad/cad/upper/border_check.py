@@ -53,8 +53,8 @@ def compared_border(
         raise CadError(
             STEP,
             f"{len(strays)} of the {len(after)} free edges of the result, {sum(strays):.3g} mm in"
-            " all, are none of the upper's - 0 is the limit - the wrinkle is not watertight: change"
-            " the margin, or move the rails a little",
+            " all, are none of the upper's: the wrinkle is not watertight. Change the margin, or"
+            " move the rails a little.",
         )
     off = lengths[1] - (lengths[0] - lost)
     slack = allowance + settings.SEWING * (1 + len(after))
@@ -62,8 +62,8 @@ def compared_border(
         raise CadError(
             STEP,
             f"the border is {lengths[1]:.6g} mm long, the upper's {lengths[0] - lost:.6g} mm"
-            " without what was carved out -"
-            f" {slack:.3g} mm is the limit - change the margin, or move the rails a little",
+            " without what was carved out. They may differ by"
+            f" {slack:.3g} mm: change the margin, or move the rails a little.",
         )
     return Border(len(before), len(after), lengths[0], lengths[1])
 

@@ -148,7 +148,7 @@ def _check_numbers(margin: float, fade: float, limit: float, join: float) -> Non
         ("join", join, 0.0, np.inf),
     ):
         if not low <= value <= high or not np.isfinite(value):
-            raise InputError(f"{name} - found {value:g} - {low:g} to {high:g} is the range")
+            raise InputError(f"{name} is {value:g}: {low:g} to {high:g} is allowed.")
 
 
 def _check_near(rail: Rail, name: str, limit: float) -> None:
@@ -156,9 +156,9 @@ def _check_near(rail: Rail, name: str, limit: float) -> None:
     distance = float(rail.feet.distances[at])
     if distance > limit:
         raise InputError(
-            f"rail {name} - it leaves the upper by {distance:.3g} mm at"
-            f" {rail.shares[at] * rail.length:.4g} mm of its {rail.length:.4g} mm - the limit is"
-            f" {limit:.3g} mm - draw it nearer to the upper, or raise the limit"
+            f"Rail {name} leaves the upper by {distance:.3g} mm at"
+            f" {rail.shares[at] * rail.length:.4g} mm of its {rail.length:.4g} mm, at most"
+            f" {limit:.3g} mm is allowed. Draw it nearer to the upper, or raise the limit."
         )
 
 
@@ -193,9 +193,9 @@ def _divided(split: Split) -> tuple[list[TopoDS_Face], list[TopoDS_Face], tuple[
 def _check_removed(removed: Sequence[TopoDS_Face], rails: tuple[Rail, Rail]) -> None:
     if not removed:
         raise InputError(
-            f"rails P and Q - of {rails[0].length:.4g} and {rails[1].length:.4g} mm, they cut no"
-            " piece out of the upper: their ends lie inside it and do not close, or run beyond it -"
-            " a closed outline is needed - end both on the upper, or both on its border"
+            f"Rails P and Q of {rails[0].length:.4g} and {rails[1].length:.4g} mm cut no piece out"
+            " of the upper: their ends lie inside it and do not close, or run beyond it. End both"
+            " on the upper, or both on its border."
         )
 
 
@@ -203,8 +203,8 @@ def _check_whole(faces: UpperFaces, body: Sequence[TopoDS_Face], allow_split: bo
     before, after = len(connected_groups(faces.faces)), len(connected_groups(body))
     if after > before and not allow_split:
         raise InputError(
-            f"opening - it cuts the upper into {after} parts, it had {before} - {before} is the"
-            " limit - end the rails inside the upper, or allow the split (allow_split=True)"
+            f"The opening cuts the upper into {after} parts, it had {before}. End the rails inside"
+            " the upper, or allow the split (allow_split=True)."
         )
     return after
 
@@ -225,7 +225,7 @@ def _checked_areas(faces: Sequence[TopoDS_Face], split: Split) -> tuple[float, f
         raise CadError(
             STEP,
             f"body and removed part have {kept + cut:.9g} mm2, the upper {whole:.9g}: off by"
-            f" {off:.1e} of it - {settings.AREA_BALANCE:.0e} is the limit - move the rails",
+            f" {off:.1e} of it, at most {settings.AREA_BALANCE:.0e} is allowed. Move the rails.",
         )
     return whole, kept, cut
 

@@ -70,8 +70,8 @@ def rail_on(upper: UpperFaces, directrix: Directrix, name: str) -> Rail:
     length = polyline_length(feet.points)
     if not length > settings.RAIL_LENGTH_MIN:
         raise InputError(
-            f"rail {name} - its feet on the upper are one point, length {length:.3g} mm - more than"
-            f" {settings.RAIL_LENGTH_MIN:.0e} mm is needed - draw it along the upper"
+            f"The feet of rail {name} on the upper are one point: they span {length:.3g} mm, more"
+            f" than {settings.RAIL_LENGTH_MIN:.0e} mm is needed. Draw it along the upper."
         )
     return Rail(
         arc_lengths(feet.points) / length, feet, unit(np.gradient(feet.points, axis=0)), length
@@ -97,9 +97,9 @@ def across_rail(rail: Rail, other: Rail, names: tuple[str, str]) -> Floats:
     width = float(np.abs(offset).max())
     if width <= settings.WIDTH_PER_LENGTH_MIN * rail.length:
         raise InputError(
-            f"rails {names[0]} and {names[1]} - they enclose no area: largest distance"
-            f" {width:.3g} mm - more than {settings.WIDTH_PER_LENGTH_MIN * rail.length:.3g} mm is"
-            " needed - move them apart"
+            f"Rails {names[0]} and {names[1]} enclose no area: they are {width:.3g} mm apart at"
+            f" most, more than {settings.WIDTH_PER_LENGTH_MIN * rail.length:.3g} mm is needed. Move"
+            " them apart."
         )
     sign = np.sign(offset[np.abs(offset).argmax()])
     # A step of the samples is the resolution at which the nearest point is known.
@@ -111,9 +111,9 @@ def across_rail(rail: Rail, other: Rail, names: tuple[str, str]) -> Floats:
         at = int(np.argmin(offset * sign))
         crossings = _sign_changes(offset, settings.WIDTH_PER_LENGTH_MIN * rail.length)
         raise InputError(
-            f"rails {names[0]} and {names[1]} - they cross {crossings} times, by up to"
-            f" {abs(offset[at]):.3g} mm at {rail.shares[at] * rail.length:.4g} mm along"
-            f" {names[0]} - 0 mm is the limit - keep one on one side of the other"
+            f"Rails {names[0]} and {names[1]} cross {crossings} times, by up to"
+            f" {abs(offset[at]):.3g} mm at {rail.shares[at] * rail.length:.4g} mm along {names[0]}."
+            " Keep one on one side of the other."
         )
     return np.asarray(lateral * sign, dtype=np.float64)
 

@@ -92,9 +92,9 @@ def profile_curves(
 ) -> tuple[Directrix, Directrix]:
     """Returns the profiles of ``wrinkle_profiles`` as directrices."""
     if not settings.FADE_MIN <= fade <= 0.5:
-        raise InputError(f"fade - found {fade:g} - {settings.FADE_MIN:g} to 0.5 is the range")
+        raise InputError(f"fade is {fade:g}: {settings.FADE_MIN:g} to 0.5 is allowed.")
     if side not in ("out", "in", "both"):
-        raise InputError(f"side - found {side!r} - out, in or both is needed")
+        raise InputError(f"side is {side!r}. Choose out, in or both.")
     made = []
     for i, (rail, name) in enumerate(zip(opening.rails, "PQ", strict=True)):
         shape = _wave_shape(rail, _one(waves, i), _one(phase, i), fade, side, name)
@@ -119,9 +119,11 @@ def _wave_shape(
     """Returns (k,) the wave of height 1 at the points of a rail."""
     most = settings.WAVES_PER_POINT * len(rail.points)
     if not 0.0 < waves <= most:
-        raise InputError(f"waves - found {waves:g} on {name} - above 0, up to {most:.0f}")
+        raise InputError(
+            f"waves is {waves:g} on {name}: more than 0 and up to {most:.0f} are allowed."
+        )
     if not np.isfinite(phase):
-        raise InputError(f"phase - found {phase:g} on {name} - a finite angle is needed")
+        raise InputError(f"phase is {phase:g} on {name}. Give a finite angle.")
     angle = 2.0 * np.pi * waves * rail.shares + phase
     near = np.minimum(rail.shares, 1.0 - rail.shares)
     # A squared sine: at the ends it grows slower than the margin, so the band does not stand up.
@@ -136,14 +138,14 @@ def _offset(rail: Rail, amount: float | Wave, shape: Floats, name: str) -> Float
     """Returns (k,) mm: how far the points of a rail move."""
     if not callable(amount):
         if not np.isfinite(amount):
-            raise InputError(f"{name} - found {amount} mm - a finite height is needed")
+            raise InputError(f"{name} is {amount} mm. Give a finite height.")
         return amount * shape
     arc = rail.shares * rail.length
     offset = np.asarray(amount(arc), dtype=np.float64)
     if offset.shape != arc.shape or not np.isfinite(offset).all():
         raise InputError(
-            f"{name} - the callable returned shape {offset.shape} for {arc.shape} arc lengths,"
-            f" {int((~np.isfinite(offset)).sum())} values not finite - one finite offset in mm per"
-            " arc length is needed - let it take and return arrays"
+            f"The callable {name} returned shape {offset.shape} for {arc.shape} arc lengths,"
+            f" {int((~np.isfinite(offset)).sum())} values not finite. Let it take and return"
+            " arrays: one finite offset in mm per arc length."
         )
     return offset

@@ -50,8 +50,8 @@ class UpperFaces:
         self.faces = faces_of(upper)
         if not self.faces:
             raise InputError(
-                f"upper - found a {kind_name(upper)} without faces - a face, a shell or"
-                " a compound of faces is needed - choose another shape as the upper"
+                f"The upper is a {kind_name(upper)} without faces. Choose a face, a shell or a"
+                " compound of faces as the upper."
             )
         self._shape = upper
         self._surfaces = [ShapeAnalysis_Surface(BRep_Tool.Surface_s(face)) for face in self.faces]
@@ -143,8 +143,8 @@ def _turned_alike(normals: Floats) -> Floats:
     defined = np.flatnonzero(lengths > 0.5)
     if len(defined) == 0:
         raise InputError(
-            "upper - its surface normal is nowhere defined along the rail - faces with a normal"
-            " are needed - repair the upper"
+            "The upper's surface normal is nowhere defined along the rail. Repair the upper: it"
+            " needs faces with a normal."
         )
     nearest = defined[np.abs(np.arange(len(normals))[:, None] - defined).argmin(axis=1)]
     filled = normals[nearest]

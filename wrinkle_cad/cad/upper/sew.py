@@ -57,8 +57,8 @@ def joined(faces: Sequence[TopoDS_Face], tolerance: float) -> tuple[TopoDS_Shape
     if len(origin) != len(faces) or min(origin) < 0:
         raise CadError(
             "join the faces of the upper",
-            f"{len(origin)} of {len(faces)} faces are left at a tolerance of {tolerance:.2g} mm -"
-            " all are needed - lower it",
+            f"{len(origin)} of {len(faces)} faces are left at a tolerance of {tolerance:.2g} mm,"
+            " all are needed. Lower it.",
         )
     return sewn, origin
 
@@ -82,16 +82,15 @@ def sew(faces: Sequence[TopoDS_Face], tolerance: float) -> Sewn:
     if len(shells) != 1 or found != len(faces) or lost:
         raise CadError(
             STEP,
-            f"found {len(shells)} shells, the first of {found} faces,"
-            f" {sewing.NbDeletedFaces()} faces deleted, {sewing.NbMultipleEdges()} edges with more"
-            f" than two faces - 1 shell of {len(faces)} faces is needed - change the margin or move"
-            " the rails a little",
+            f"found {len(shells)} shells, the first of {found} faces, {sewing.NbDeletedFaces()}"
+            f" faces deleted, {sewing.NbMultipleEdges()} edges with more than two faces, instead of"
+            f" 1 shell of {len(faces)} faces. Change the margin or move the rails a little.",
         )
     shell = as_shell(shells[0])
     held = ShapeIndex(faces_of(shell))
     places = [held.find(sewing.Modified(face)) for face in faces]
     if min(places) < 0 or len(set(places)) < len(faces):
-        raise CadError(STEP, "two faces became one - each must stay itself - widen the margin")
+        raise CadError(STEP, "two faces became one. Widen the margin.")
     if faces_of(shell)[places[0]].Orientation() != faces[0].Orientation():
         shell = as_shell(shell.Reversed())
     kept = faces_of(shell)
@@ -139,6 +138,6 @@ def _check_oriented(shell: TopoDS_Shell) -> None:
     if wrong:
         raise CadError(
             STEP,
-            f"{wrong} edges are run along twice in the same direction - neighbours must face the"
-            " same way - check that the faces of the upper do",
+            f"{wrong} edges are run along twice in the same direction. Check that all faces of the"
+            " upper face the same way.",
         )

@@ -99,7 +99,7 @@ def split_faces(
         splitter.SetRunParallel(False)
         splitter.Build()
         if not splitter.IsDone():
-            raise CadError(STEP, "the kernel's splitter failed - move the rails a little")
+            raise CadError(STEP, "the kernel's splitter failed. Move the rails a little.")
         pieces = tuple(_pieces_of(splitter, face) for face in faces)
         section = ShapeIndex(splitter.SectionEdges())
         for edge in drawn or ():
@@ -199,8 +199,8 @@ def _decide(votes: Sequence[Sequence[float]], joints: Sequence[Sequence[int]]) -
             raise CadError(
                 STEP,
                 f"a piece has {inner} of its {len(cast)} new edges on the inner side of the"
-                " opening - all or none is the rule - keep the outline away from folds and borders"
-                " of the upper, or change the margin",
+                " opening, neither all nor none. Keep the outline away from folds and borders of"
+                " the upper, or change the margin.",
             )
         known[i] = inner > 0
     grown = True

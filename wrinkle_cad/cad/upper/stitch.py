@@ -110,8 +110,8 @@ def stitch(
     wanted = list(strips) if isinstance(strips, Sequence) else [strips]
     if len(given) != len(wanted) or not given:
         raise InputError(
-            f"stitch - found {len(given)} openings and {len(wanted)} strips - one strip per opening"
-            " is needed - pass lists of equal length"
+            f"{len(given)} openings and {len(wanted)} strips cannot be stitched: pass lists of"
+            " equal length, one strip per opening."
         )
     chained = _carved_in_turn(given)
     faces, parts, bands = _all_faces(chained, wanted, tolerance)
@@ -169,8 +169,8 @@ def _side_ends(edges: Sequence[TopoDS_Edge], profile: Directrix, rail: str) -> F
     gap = float(np.linalg.norm(tips - ends, axis=1).max())
     if gap > settings.RAIL_OFF_UPPER:
         raise InputError(
-            f"profile {rail} - its ends are {gap:.3g} mm from those of the opening - the limit is"
-            f" {settings.RAIL_OFF_UPPER:.3g} mm - pass the profiles that belong to this opening"
+            f"The ends of profile {rail} are {gap:.3g} mm from those of the opening, at most"
+            f" {settings.RAIL_OFF_UPPER:.3g} mm is allowed. Pass the profiles of this opening."
         )
     return ends
 
@@ -227,7 +227,7 @@ def _checked_tolerance(shell: TopoDS_Shell, upper: TopoDS_Shape) -> float:
     if found > limit:
         raise CadError(
             STEP,
-            f"the largest edge tolerance is {found:.2g} mm, the upper's own {own:.2g} mm -"
-            f" {limit:.2g} mm is the limit - change the margin, or move the rails a little",
+            f"the largest edge tolerance is {found:.2g} mm, the upper's own {own:.2g} mm,"
+            f" at most {limit:.2g} mm is allowed. Change the margin, or move the rails a little.",
         )
     return found

@@ -91,7 +91,7 @@ def finished_text(raw: bytes, parts: Sequence[Part], header: Header) -> bytes:
     data = _PLACEHOLDER.sub(lambda match: _name(match, parts), data)
     schema = re.search(rb"FILE_SCHEMA\(.*?\);", text[:start], re.DOTALL)
     if schema is None:
-        raise CadError("write STEP", "the CAD kernel wrote no schema")
+        raise CadError("write STEP", "the CAD kernel wrote no schema. Check the shapes.")
     head = _header(header, schema[0])
     return b"".join([head, data, styles, b"ENDSEC;\nEND-ISO-10303-21;\n"])
 
@@ -133,7 +133,7 @@ def _styles(data: bytes, parts: Sequence[Part]) -> bytes:
     missing = [i for i in range(len(parts)) if i not in items]
     if missing:
         name = one_line(parts[missing[0]].name)
-        raise CadError("write STEP", f"the CAD kernel left out part '{name}' - check its shape")
+        raise CadError("write STEP", f"the CAD kernel left out part '{name}'. Check its shape.")
     faces = _numbers_of_faces(data, parts)
     holder_of = holders(data) if faces else {}
     following = max(int(match[1]) for match in _LAST.finditer(data)) + 1
@@ -159,7 +159,7 @@ def _numbers_of_faces(data: bytes, parts: Sequence[Part]) -> dict[tuple[int, int
             raise CadError(
                 "write STEP",
                 f"the CAD kernel left out {missing} of {len(part.faces)} named or colored faces of"
-                f" part '{name}' - check its shape",
+                f" part '{name}'. Check its shape.",
             )
     return found
 

@@ -106,15 +106,15 @@ def check_step(source: Source, text: bytes) -> None:
         where = "inside DATA" if sections and sections[-1] == b"DATA" else "before its end mark"
         line = text.count(b"\n") + 1
         raise source.fail(
-            f"truncated: the file ends in line {line} {where}, END-ISO-10303-21 is missing"
-            " - copy or export it again"
+            f"truncated: the file ends in line {line} {where}, END-ISO-10303-21 is missing."
+            " Copy or export it again."
         )
     for number, body in entities(
         text, rb"B_SPLINE_\w+_WITH_KNOTS", rb"RATIONAL_B_SPLINE_\w+"
     ).items():
         fault = _spline_fault(body)
         if fault is not None:
-            raise source.fail(f"damaged: B-spline #{number} has {fault} - export it again")
+            raise source.fail(f"damaged: B-spline #{number} has {fault}. Export it again.")
 
 
 def _spline_fault(body: bytes) -> str | None:
