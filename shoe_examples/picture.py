@@ -41,7 +41,7 @@ def face_triangles(face: TopoDS_Face) -> Floats:
 
 
 def shaded(triangles: Floats, color: Color, toward: Floats) -> Floats:
-    """Returns (k, 4) colours of triangles lit from above and seen from a direction."""
+    """Returns (k, 4) colors of triangles lit from above and seen from a direction."""
     normals = np.cross(triangles[:, 1] - triangles[:, 0], triangles[:, 2] - triangles[:, 0])
     normals /= np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), 1e-12)
     is_inside = normals @ toward < 0.0
@@ -64,7 +64,7 @@ def draw(
     *,
     views: Sequence[tuple[float, float]] = VIEWS,
 ) -> None:
-    """Writes a PNG of the parts, each in its colour, one picture per view side by side."""
+    """Writes a PNG of the parts, each in its color, one picture per view side by side."""
     import matplotlib as mpl
 
     mpl.use("Agg")

@@ -54,7 +54,7 @@ def slow_job(job: Job, *, progress: Progress | None = None) -> JobDone | JobFail
     return JobDone(job=job, outputs=tuple(outputs), summary={}, seconds={"write": 0.03})
 
 
-def chattering_job(job: Job, *, progress: Progress | None = None) -> JobDone | JobFailed:
+def talkative_job(job: Job, *, progress: Progress | None = None) -> JobDone | JobFailed:
     """Prints on both streams, as Python and as the kernel does."""
     sys.stdout.write("python on stdout\n")
     sys.stdout.flush()

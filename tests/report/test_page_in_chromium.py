@@ -79,7 +79,7 @@ def picture(browser: webdriver.Chrome, name: str) -> NDArray[np.uint8]:
 
 
 def is_blank(image: NDArray[np.uint8]) -> bool:
-    """Whether less than one pixel in two hundred is drawn in another colour than the corner."""
+    """Whether less than one pixel in two hundred is drawn in another color than the corner."""
     return bool((image != image[0, 0]).any(axis=2).mean() < 0.005)
 
 
@@ -206,12 +206,12 @@ def test_the_3d_view_turns_zooms_and_returns(page: webdriver.Chrome) -> None:
 
 
 @pytest.mark.parametrize("color_by", ["fold", "twist"])
-def test_bridges_are_coloured_by_what_is_chosen(page: webdriver.Chrome, color_by: str) -> None:
+def test_bridges_are_colored_by_what_is_chosen(page: webdriver.Chrome, color_by: str) -> None:
     before = picture(page, "space")
     page.execute_script(
         "document.querySelector(arguments[0]).click()", f"[name=color-by][value={color_by}]"
     )
-    until(lambda: (picture(page, "space") != before).any(axis=2).mean() > 0.005, "other colours")
+    until(lambda: (picture(page, "space") != before).any(axis=2).mean() > 0.005, "other colors")
     high = page.find_element(By.CSS_SELECTOR, ".legend .high").text
     entry = json.loads(
         page.execute_script("return document.getElementById('summary').textContent")

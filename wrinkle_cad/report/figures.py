@@ -1,6 +1,6 @@
 """The figures of a strip on matplotlib axes: drawn and returned, never shown.
 
-Colours are the page's: blue and orange keep apart for colour-blind eyes.
+Colors are the page's: blue and orange keep apart for color-blind eyes.
 """
 
 from __future__ import annotations

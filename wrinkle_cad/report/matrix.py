@@ -88,7 +88,7 @@ def _tile(part: NDArray[np.bool_]) -> str | int:
 
 
 def _picture(shades: NDArray[np.uint8], *, bits: int) -> str:
-    """A palette PNG, base64: one colour whose opacity is the shade, so that it suits any theme."""
+    """A palette PNG, base64: one color whose opacity is the shade, so that it suits any theme."""
     from PIL import Image
 
     top = _SHADES - 1

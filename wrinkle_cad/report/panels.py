@@ -65,7 +65,7 @@ def _worst_strip(numbers: Numbers) -> int:
 
 
 def space_panel(strips: Sequence[StripView], body: MeshView | None) -> Element:
-    """The 3-D view with its colours and layers."""
+    """The 3-D view with its colors and layers."""
     colors = [
         node(
             "label",
@@ -83,7 +83,7 @@ def space_panel(strips: Sequence[StripView], body: MeshView | None) -> Element:
         node("div", node("h2", "In space"), node("p", _IDLE, class_="readout"), class_="head"),
         node(
             "div",
-            node("fieldset", *colors, class_="segments", aria_label="Colour by"),
+            node("fieldset", *colors, class_="segments", aria_label="Color by"),
             node("fieldset", node("legend", "Show"), *layers),
             node("button", "Whole view", type="button", class_="reset"),
             class_="toolbar",

@@ -12,7 +12,7 @@ import psutil
 import pytest
 
 from tests.batch.conftest import Bench
-from tests.batch.stand_ins import KINDS, PHASES, chattering_job, worker_id_job
+from tests.batch.stand_ins import KINDS, PHASES, talkative_job, worker_id_job
 from wrinkle_cad.batch.folder.events import FileFinished, FilePhase
 from wrinkle_cad.batch.folder.manifest import Record
 from wrinkle_cad.batch.workers.crew import WorkerCrew
@@ -115,7 +115,7 @@ def test_what_the_kernel_prints_reaches_no_stream_of_ours(
     bench: Bench, capfd: pytest.CaptureFixture[str]
 ) -> None:
     bench.put(a="good", b="SIGSEGV@page")
-    bench.run(workers=1, limits=LIMITS, job_function=chattering_job)
+    bench.run(workers=1, limits=LIMITS, job_function=talkative_job)
     assert capfd.readouterr() == ("", "")
     log = (bench.outputs / "batch.log").read_text()
     assert "kernel on stderr" in log

@@ -141,7 +141,7 @@ def test_faces_that_are_not_sewn_are_joined_and_wide_gaps_stay() -> None:
     assert len(free_edges(closed.upper_shape)) == 4
 
 
-def test_names_and_colours_of_the_panels_stay_with_the_body() -> None:
+def test_names_and_colors_of_the_panels_stay_with_the_body() -> None:
     panels = [build123d.Face(panel) for panel in faces_of(two_panels())]
     for panel, label, color in zip(panels, ("inner", "outer"), ("red", "blue"), strict=True):
         panel.label, panel.color = label, build123d.Color(color)
@@ -159,7 +159,7 @@ def test_names_and_colours_of_the_panels_stay_with_the_body() -> None:
     assert carved.removed.area == pytest.approx(carved.areas[2], rel=1e-4)
 
 
-def test_a_single_face_keeps_its_name_and_colour() -> None:
+def test_a_single_face_keeps_its_name_and_color() -> None:
     face = build123d.Face(shoe())
     face.label, face.color = "vamp", build123d.Color("green")
     body = carve(face, *rails()).body

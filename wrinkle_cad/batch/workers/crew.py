@@ -24,10 +24,10 @@ from wrinkle_cad.job.outcome import JobDone
 
 from .ending import MEMORY_ERRORS, CrewLimits, Ending, failure_of
 from .task import Task, TaskResult
-from .worker import Began, Confession, PhaseReached, peak_bytes, serve
+from .worker import Began, PhaseReached, WorkerFault, peak_bytes, serve
 
 _GOODBYE_S: Final = 2.0
-_TAIL_BYTES: Final = 4000
+_KEPT_BYTES: Final = 4000
 
 
 @dataclass(frozen=True, slots=True)
@@ -85,18 +85,18 @@ class _Worker:
     def __init__(self, limits: CrewLimits) -> None:
         context = multiprocessing.get_context("spawn")
         self.pipe, tasks = context.Pipe()
-        self.chatter, chatter = context.Pipe(duplex=False)
+        self.stderr, stderr = context.Pipe(duplex=False)
         self.process = context.Process(
             target=serve,
-            args=(tasks, chatter, limits.memory_bytes, os.getpid()),
+            args=(tasks, stderr, limits.memory_bytes, os.getpid()),
             name="wrinkle_cad worker",
             daemon=True,
         )
         self.process.start()
         # With our copies closed, the pipe ends with the worker.
         tasks.close()
-        chatter.close()
-        self.tail: deque[bytes] = deque()
+        stderr.close()
+        self.last_output: deque[bytes] = deque()
         self.key: int | None = None
         self.task: Task | None = None
         self.rest()
@@ -104,12 +104,12 @@ class _Worker:
     def rest(self) -> None:
         """Forgets the task that it had."""
         self.key = self.task = None
-        self.confession: Confession | None = None
+        self.fault: WorkerFault | None = None
         self.began = False
         self.phase = ""
         self.since = 0.0
         self.peak_bytes = 0
-        self.tail.clear()
+        self.last_output.clear()
 
     def give(self, key: int, task: Task) -> None:
         self.rest()
@@ -118,16 +118,18 @@ class _Worker:
         with contextlib.suppress(BrokenPipeError, ConnectionResetError):
             self.pipe.send(task)
 
-    def read_chatter(self) -> None:
+    def read_stderr(self) -> None:
         """Takes what it wrote to stderr and keeps the end of it."""
         with contextlib.suppress(OSError):
-            while self.chatter.poll():
-                piece = os.read(self.chatter.fileno(), 1 << 16)
+            while self.stderr.poll():
+                piece = os.read(self.stderr.fileno(), 1 << 16)
                 if not piece:
                     return
-                self.tail.append(piece[-_TAIL_BYTES:])
-                while len(self.tail) > 1 and sum(map(len, self.tail)) > 2 * _TAIL_BYTES:
-                    self.tail.popleft()
+                self.last_output.append(piece[-_KEPT_BYTES:])
+                while (
+                    len(self.last_output) > 1 and sum(map(len, self.last_output)) > 2 * _KEPT_BYTES
+                ):
+                    self.last_output.popleft()
 
     def messages(self) -> Iterator[object]:
         """Takes what it has sent; ends quietly where it died in the middle of a message."""
@@ -139,19 +141,19 @@ class _Worker:
         """Kills the process and frees what belongs to it."""
         self.process.kill()
         self.process.join()
-        self.read_chatter()
+        self.read_stderr()
         self.pipe.close()
-        self.chatter.close()
+        self.stderr.close()
 
     def ending(self, *, is_late: bool) -> Ending:
         return Ending(
             exit_code=self.process.exitcode,
             is_late=is_late,
             phase=self.phase,
-            confession=self.confession,
+            fault=self.fault,
             peak_bytes=self.peak_bytes,
             seconds=time.monotonic() - self.since,
-            chatter=b"".join(self.tail)[-_TAIL_BYTES:].decode("utf-8", "replace"),
+            stderr=b"".join(self.last_output)[-_KEPT_BYTES:].decode("utf-8", "replace"),
         )
 
 
@@ -189,7 +191,7 @@ class WorkerCrew:
         """Waits until a worker says something, at most ``patience`` seconds."""
         watched: list[Connection | int] = []
         for worker in self._busy:
-            watched += [worker.pipe, worker.chatter, worker.process.sentinel]
+            watched += [worker.pipe, worker.stderr, worker.process.sentinel]
         connection.wait(watched, timeout=patience)
         return [event for worker in tuple(self._busy) for event in self._look_at(worker)]
 
@@ -216,22 +218,22 @@ class WorkerCrew:
         assert key is not None
         is_alive = worker.process.is_alive()
         worker.peak_bytes = max(worker.peak_bytes, peak_bytes(worker.process.pid or 0))
-        worker.read_chatter()
+        worker.read_stderr()
         for message in worker.messages():
             if isinstance(message, Began):
                 worker.began = True
             elif isinstance(message, PhaseReached):
                 worker.phase = message.name
                 yield Phase(key, message.name, message.done, message.total)
-            elif isinstance(message, Confession):
-                worker.confession = message
+            elif isinstance(message, WorkerFault):
+                worker.fault = message
             elif isinstance(message, TaskResult):
                 yield self._finish(worker, key, message, is_alive=is_alive)
                 return
         limit = self._limits.timeout_s
         is_late = limit is not None and time.monotonic() - worker.since > limit
         if not is_alive or is_late:
-            yield from self._bury(worker, key, is_late=is_late and is_alive)
+            yield from self._end(worker, key, is_late=is_late and is_alive)
 
     def _finish(self, worker: _Worker, key: int, result: TaskResult, *, is_alive: bool) -> Finished:
         self._busy.remove(worker)
@@ -245,20 +247,20 @@ class WorkerCrew:
                 worker.end()
             return Finished(key, result)
         if self._limits.memory_bytes is not None:
-            worker.confession = Confession(outcome.error, outcome.message, True, worker.peak_bytes)
+            worker.fault = WorkerFault(outcome.error, outcome.message, True, worker.peak_bytes)
             failure = failure_of(outcome.job, worker.ending(is_late=False), self._limits)
             result = TaskResult(outcome=failure)
         # A process that ran out of memory is not trusted with the next file.
         worker.end()
         return Finished(key, result)
 
-    def _bury(self, worker: _Worker, key: int, *, is_late: bool) -> Iterator[Event]:
+    def _end(self, worker: _Worker, key: int, *, is_late: bool) -> Iterator[Event]:
         task, began = worker.task, worker.began
         assert task is not None
         worker.end()
         self._busy.remove(worker)
         if not began and not is_late and self._starts[key] < settings.BATCH_STARTS:
-            # The job is innocent: it was never begun.
+            # The job was never begun: it is not what ended the process.
             self.give(key, task)
             return
         self._starts.pop(key)

@@ -12,7 +12,7 @@ from wrinkle_cad.files.names import printable
 from wrinkle_cad.job.job import Job
 from wrinkle_cad.job.outcome import JobFailed
 
-from .worker import Confession
+from .worker import WorkerFault
 
 GIB: Final = 1 << 30
 _MEMORY_SIGNALS: Final = (signal.SIGSEGV, signal.SIGABRT)
@@ -60,13 +60,13 @@ class Ending:
     """Whether it was killed because its time was up."""
     phase: str
     """The phase that its job had reached."""
-    confession: Confession | None
+    fault: WorkerFault | None
     """The exception that ended it."""
     peak_bytes: int
     """Most address space that it was seen to have."""
     seconds: float
     """How long it had the job."""
-    chatter: str
+    stderr: str
     """The end of what it wrote to stderr."""
 
 
@@ -79,7 +79,7 @@ def failure_of(job: Job, ending: Ending, limits: CrewLimits) -> JobFailed:
         error=error,
         message=message,
         seconds={"total": ending.seconds},
-        trace=ending.chatter,
+        trace=ending.stderr,
     )
 
 
@@ -91,18 +91,18 @@ def _cause(ending: Ending, limits: CrewLimits) -> tuple[str, str]:
             " --timeout or a coarser --tolerance"
         )
     if _hit_memory(ending, limits):
-        peak = max(ending.peak_bytes, ending.confession.peak_bytes if ending.confession else 0)
+        peak = max(ending.peak_bytes, ending.fault.peak_bytes if ending.fault else 0)
         return "MemoryLimit", (
             f"memory{where} - {peak / GIB:.2f} GiB mapped when more was asked for"
             f" ({_manner(ending)}) - limit {limits.memory_gib or 0:g} GiB - give more with --memory"
             " or a coarser --tolerance"
         )
-    if ending.confession is not None:
-        text = printable(" ".join(ending.confession.message.split())) or "no message"
-        if ending.confession.is_expected:
-            return ending.confession.error, text
-        return ending.confession.error, (
-            f"internal error{where} - {ending.confession.error}: {text} - none expected - please"
+    if ending.fault is not None:
+        text = printable(" ".join(ending.fault.message.split())) or "no message"
+        if ending.fault.is_expected:
+            return ending.fault.error, text
+        return ending.fault.error, (
+            f"internal error{where} - {ending.fault.error}: {text} - none expected - please"
             " report it with the file"
         )
     return "WorkerKilled", (
@@ -122,12 +122,12 @@ def _hit_memory(ending: Ending, limits: CrewLimits) -> bool:
 
 
 def _confessed(ending: Ending) -> str:
-    return "" if ending.confession is None else ending.confession.error
+    return "" if ending.fault is None else ending.fault.error
 
 
 def _manner(ending: Ending) -> str:
-    if ending.confession is not None:
-        return ending.confession.error
+    if ending.fault is not None:
+        return ending.fault.error
     code = ending.exit_code
     if code is None or code >= 0:
         return f"leaving with exit code {code}"

@@ -49,7 +49,7 @@ class PhaseReached:
 
 
 @dataclass(frozen=True, slots=True)
-class Confession:
+class WorkerFault:
     """An exception that ends the worker."""
 
     error: str
@@ -62,21 +62,19 @@ class Confession:
     """Most address space that the process had."""
 
 
-def serve(
-    tasks: Connection, chatter: Connection, memory_bytes: int | None, parent_pid: int
-) -> None:
+def serve(tasks: Connection, stderr: Connection, memory_bytes: int | None, parent_pid: int) -> None:
     """Runs in a new process: takes tasks from a pipe until the other end is closed.
 
     Args:
-        tasks: tasks come in; `Began`, `PhaseReached`, `TaskResult` and `Confession` go out.
-        chatter: gets what anything in this process writes to stderr; stdout is thrown away.
+        tasks: tasks come in; `Began`, `PhaseReached`, `TaskResult` and `WorkerFault` go out.
+        stderr: gets what anything in this process writes to stderr; stdout is thrown away.
         memory_bytes: limit of the address space; none when None.
         parent_pid: the process without which this one must not live.
     """
     end_with_parent(parent_pid)
     # Ctrl-C reaches the whole group; the parent decides what happens then.
     signal.signal(signal.SIGINT, signal.SIG_IGN)
-    _redirect(chatter)
+    _redirect(stderr)
     for name in _THREAD_SETTINGS:
         os.environ[name] = "1"
     _limit_memory(memory_bytes)
@@ -137,14 +135,14 @@ class _Confessing:
     ) -> None:
         if kind is not None:
             is_expected = issubclass(kind, WrinkleError)
-            self._tasks.send(Confession(kind.__name__, str(error), is_expected, peak_bytes()))
+            self._tasks.send(WorkerFault(kind.__name__, str(error), is_expected, peak_bytes()))
 
 
-def _redirect(chatter: Connection) -> None:
+def _redirect(stderr: Connection) -> None:
     nowhere = os.open(os.devnull, os.O_RDWR)
     os.dup2(nowhere, 0)
     os.dup2(nowhere, 1)
-    os.dup2(chatter.fileno(), 2)
+    os.dup2(stderr.fileno(), 2)
     os.close(nowhere)
     faulthandler.enable(file=2)
 

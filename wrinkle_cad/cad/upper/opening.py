@@ -76,7 +76,7 @@ class Opening:
     request: CarveRequest
     """What was asked for."""
     source: object = None
-    """The object that the upper came in, whose names and colours the body keeps."""
+    """The object that the upper came in, whose names and colors the body keeps."""
 
     @property
     def area_balance(self) -> float:
@@ -85,7 +85,7 @@ class Opening:
 
     @property
     def body(self) -> Face | Shell | Compound:
-        """The upper without the strip, as build123d has it, its names and colours kept."""
+        """The upper without the strip, as build123d has it, its names and colors kept."""
         from wrinkle_cad.cad.exchange.likeness import body_alike
 
         return body_alike(self.body_shape, self.face_origin, self.given_shape, self.source)

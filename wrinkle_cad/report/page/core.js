@@ -1,5 +1,5 @@
 "use strict";
-/* Shared by all views: decoding, the selected bridge, theme colours, canvases that zoom. */
+/* Shared by all views: decoding, the selected bridge, theme colors, canvases that zoom. */
 const Report = (() => {
   const summary = JSON.parse(document.getElementById("summary").textContent);
   const scene = JSON.parse(document.getElementById("scene").textContent);

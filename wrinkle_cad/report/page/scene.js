@@ -1,5 +1,5 @@
 "use strict";
-/* The 3-D view: strips, bands and body, coloured by what the toolbar says. */
+/* The 3-D view: strips, bands and body, colored by what the toolbar says. */
 Report.space = (THREE, canvas, panel) => {
   const { strips, scene: packed, color, stateOf, foldAt, degrees } = Report;
   const renderer = new THREE.WebGLRenderer({ canvas, antialias: true, alpha: true, preserveDrawingBuffer: true });
@@ -73,7 +73,7 @@ Report.space = (THREE, canvas, panel) => {
   const items = strips.map(build);
   if (packed.body) solid = buildBody(packed.body);
 
-  /* Cividis, sampled: even in brightness and the same to colour-blind eyes. */
+  /* Cividis, sampled: even in brightness and the same to color-blind eyes. */
   const RAMP = ["#00224e", "#35456c", "#666970", "#948e77", "#c8b866", "#fee838"].map((code) => new THREE.Color(code));
   function ramp(share) {
     const at = Math.max(0, Math.min(1, share)) * (RAMP.length - 1), from = Math.min(RAMP.length - 2, Math.floor(at));
