@@ -27,6 +27,7 @@ if TYPE_CHECKING:
     from .errors import InputError as InputError
     from .errors import JobError as JobError
     from .errors import WrinkleError as WrinkleError
+    from .errors import WrinkleWarning as WrinkleWarning
     from .job.job import Job as Job
     from .job.job import make_job as make_job
     from .job.outcome import JobDone as JobDone
@@ -58,6 +59,7 @@ _MODULE_OF: Final = {
     "run_batch": "batch.executor",
     "Finding": "errors",
     "WrinkleError": "errors",
+    "WrinkleWarning": "errors",
     "InputError": "errors",
     "JobError": "errors",
     "CadError": "errors",

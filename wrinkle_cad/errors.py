@@ -29,6 +29,10 @@ class WrinkleError(Exception):
     """Base of every error that this package raises on purpose."""
 
 
+class WrinkleWarning(UserWarning):
+    """Something about a strip is unsure; it says what its findings say, once for each strip."""
+
+
 class InputError(WrinkleError, ValueError):
     """Something handed in cannot be used: a curve, an array, a file, an option."""
 

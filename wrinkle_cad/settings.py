@@ -144,6 +144,9 @@ LENGTH_ERROR: Final = 1e-9
 AREA_RELATIVE_ERRORS: Final = (1e-8, 1e-6, 1e-4, 1e-2)
 """Tried in turn for the area in a strip's report; a finding tells when it is not the first."""
 
+AREA_SURE: Final = 1e-6
+"""An area known no better than this share of it is a finding."""
+
 AREA_RELATIVE_ERROR: Final = 1e-8
 """How exactly the CAD kernel integrates the area of a face; its own default is some 1e-5."""
 

@@ -7,9 +7,9 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
-from wrinkle_cad import settings
 from wrinkle_cad.errors import Finding, JobError, WrinkleError
 from wrinkle_cad.files.names import error_words
+from wrinkle_cad.wrinkle.loudness import findings_in_the_result
 
 from .job import Job
 from .outcome import JobDone, JobFailed, Progress
@@ -41,7 +41,8 @@ def run_job(job: Job, *, progress: Progress | None = None) -> JobDone | JobFaile
     """
     clock = PhaseClock(progress, len(_PHASES))
     try:
-        return _run(job, clock)
+        with findings_in_the_result():
+            return _run(job, clock)
     except (WrinkleError, MemoryError, OSError) as error:
         return JobFailed(
             job=job,
@@ -138,15 +139,8 @@ def _judged(job: Job, file: CadFile, chosen: Chosen, made: Made) -> dict[str, An
 
 def findings_on(strip: TriangulatedStrip, report: StripReport) -> Iterator[Finding]:
     """What the user should know about a strip."""
-    yield from strip.findings
-    if strip.area_error > settings.AREA_RELATIVE_ERROR:
-        yield Finding(
-            "area-uncertain",
-            "warning",
-            f"The area of {report.name} is uncertain: two integrations differ by up to"
-            f" {strip.area_error:.0e} of it, in a smooth strip by"
-            f" {settings.AREA_RELATIVE_ERROR:.0e} at most. Look for kinks in its rails.",
-        )
+    # How a pattern was split says the pattern itself, with the number of its pieces.
+    yield from (finding for finding in strip.findings if finding.code != "flat-overlaps")
     invalid = report.invalid_bridges - report.inflection_bridges
     if invalid:
         yield Finding(

@@ -23,6 +23,8 @@ from wrinkle_cad.strip.gaps import find_gaps
 from wrinkle_cad.strip.triangulation import Triangulation, triangulate
 
 from .exact_surface import exact_surface
+from .loudness import warn_of
+from .strip_findings import area_findings, flat_findings, shape_findings
 from .strip_report import Role, StripReport, report_on
 
 if TYPE_CHECKING:
@@ -89,7 +91,8 @@ class TriangulatedStrip:
         self.role: Role = role
         self.thickness = thickness
         self.k_factor = k_factor
-        self.findings = findings
+        self._noticed = (*findings, *shape_findings(name, triangulation))
+        self._is_told = warn_of(self._noticed, 3)
         self._shells: dict[str, TopoDS_Shell] = {}
 
     def __repr__(self) -> str:
@@ -98,6 +101,21 @@ class TriangulatedStrip:
             f"{type(self).__name__}({self.name!r}, {len(t.p)} x {len(t.q)} samples, "
             f"{t.invalid_count} of {t.interior_count} bridges not locally convex)"
         )
+
+    @cached_property
+    def findings(self) -> tuple[Finding, ...]:
+        """What is unsure about the strip; asking for it makes the surface and the unrolling.
+
+        Rails that were turned, a fold-back, a strip that passes through itself, a pattern that
+        must be split, an area known to no better than 1e-6. A ``WrinkleWarning`` says so as well.
+        """
+        flat = flat_findings(self.name, self.unrolling)
+        return (*self._noticed, *flat, *area_findings(self.name, self.area_error))
+
+    def _tell(self, findings: tuple[Finding, ...]) -> None:
+        """Warns of what was found later on, unless the strip has warned before."""
+        if not self._is_told:
+            self._is_told = warn_of(findings, 4)
 
     def topods_shell(self, surface: settings.Surface | None = None) -> TopoDS_Shell:
         """The surface as the kernel's own shell, made once per kind and shared."""
@@ -152,6 +170,11 @@ class TriangulatedStrip:
 
     @cached_property
     def _unrolled(self) -> Unrolling:
+        unrolling = self._laid_flat()
+        self._tell(flat_findings(self.name, unrolling))
+        return unrolling
+
+    def _laid_flat(self) -> Unrolling:
         if self.surface == "facets":
             return unroll(self.triangulation)
         return unroll_cones(
@@ -230,6 +253,11 @@ class TriangulatedStrip:
 
     @cached_property
     def _measured_area(self) -> tuple[float, float]:
+        area, error = self._integrated_area()
+        self._tell(area_findings(self.name, error))
+        return area, error
+
+    def _integrated_area(self) -> tuple[float, float]:
         """The area as exactly as it can be had: a sound strip does not fail for its last digits."""
         from wrinkle_cad.cad.kernel.measures import face_areas
         from wrinkle_cad.cad.kernel.topology import faces_of

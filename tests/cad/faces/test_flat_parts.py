@@ -22,7 +22,6 @@ RINGS = [
     for width in (2, 10, 40, 80)
     for degrees in (30, 90, 170)
 ]
-CRITERIA = ("invalid", "bending", "length")
 
 
 def pose(rng: np.random.Generator) -> b3d.Location:
@@ -31,7 +30,7 @@ def pose(rng: np.random.Generator) -> b3d.Location:
 
 
 def strip_of(p: object, q: object, **options: object) -> WrinkleStrip:
-    return WrinkleStrip(p, q, criteria=CRITERIA, **options)  # type: ignore[arg-type]
+    return WrinkleStrip(p, q, **options)  # type: ignore[arg-type]
 
 
 def faults_of(strip: WrinkleStrip, area: float) -> list[str]:
@@ -102,7 +101,7 @@ def test_the_comparison_sees_a_wrong_area_and_a_moved_point() -> None:
     strip = ring(100.0, 10.0, 90.0, b3d.Location())
     assert faults_of(strip, 1650.0) != []
     other = ring(100.0, 11.0, 90.0, b3d.Location())
-    strip.__dict__["unrolling"] = other.unrolling
+    strip.__dict__["_unrolled"] = other.unrolling
     assert outline_faults(strip) != []
 
 

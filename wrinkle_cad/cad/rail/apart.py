@@ -29,9 +29,15 @@ def check_apart(p: Directrix, q: Directrix, p_samples: Samples, q_samples: Sampl
         q_samples: samples of Q, likewise.
 
     Raises:
-        InputError: they cross, touch or coincide anywhere else; the message says where.
+        InputError: both are points, or they cross, touch or coincide anywhere else; the message
+            says where.
     """
-    shorter = min(length for length in (p.length, q.length) if length > 0.0)
+    if p.is_point and q.is_point:
+        raise InputError(
+            "P and Q are a point each, and nothing lies between. A strip needs a curve: pass one"
+            " for P, for Q or for both."
+        )
+    shorter = min(rail.length for rail in (p, q) if not rail.is_point)
     distance = settings.RAILS_APART_PER_LENGTH * shorter
     met = meetings_of(p.point_at, q.point_at, p_samples, q_samples, distance)
     longest = settings.COMMON_END_PER_LENGTH * shorter
@@ -77,7 +83,7 @@ def _sentence(faults: list[Meeting], p: Directrix, q: Directrix, longest: float)
 
 
 def _verb(meeting: Meeting, p: Directrix, q: Directrix) -> str:
-    if p.length == 0.0 or q.length == 0.0:
+    if p.is_point or q.is_point:
         return "touch"
     for rail, start, end in (
         (p, meeting.p_start, meeting.p_end),

@@ -26,6 +26,7 @@ from wrinkle_cad.errors import InputError
 from wrinkle_cad.strip.curve.polyline import polyline_length, segment_lengths
 from wrinkle_cad.strip.portable import dot
 
+from .apex import apex_in
 from .chain import chain_of
 
 if TYPE_CHECKING:
@@ -65,6 +66,11 @@ class Directrix:
 
     is_reversed: bool
     """Whether it runs against what it was made from."""
+
+    @property
+    def is_point(self) -> bool:
+        """Whether it has no length: the strip to it is a cone."""
+        return self.length == 0.0
 
     def point_at(self, parameters: Floats) -> Floats:
         """Returns (k, 3) mm at (k,) parameters; those outside the interval count as its ends."""
@@ -110,7 +116,8 @@ def make_directrix(source: object, *, name: str = "") -> Directrix:
         source: an edge, a wire, a compound of edges or a list of edges and wires (build123d,
             CadQuery or the kernel's own; a list is chained in the order given, each edge flipped as
             needed, the first one only if it has to); or points (k, 3) in mm, joined by straight
-            lines, which are then the samples; or a directrix, returned as it is.
+            lines, which are then the samples; or a directrix, returned as it is. A vertex, an edge
+            without length or a single row is a point, the apex of a cone.
         name: what messages call it.
 
     Raises:
@@ -122,9 +129,29 @@ def make_directrix(source: object, *, name: str = "") -> Directrix:
         return source
     label = f"rail {name}" if name else "rail"
     points = _points_in(source)
+    apex = apex_in(source if points is None else points)
+    if apex is not None:
+        return _point(name, apex)
     if points is not None:
         return _assemble(name, label, [_polyline(points, label)], is_polyline=True)
     return _assemble(name, label, chain_of(source, label))
+
+
+def _point(name: str, place: Floats) -> Directrix:
+    """Returns the directrix without length at (3,) mm."""
+    poles, ends = np.array([place, place]), np.array([2, 2])
+    piece = PoleCurve(1, np.array([0.0, 1.0]), ends, poles, None)
+    return Directrix(
+        name=name,
+        pieces=(piece,),
+        curves=(_kernel_curve(piece),),
+        interval=(0.0, 0.0),
+        breaks=(),
+        length=0.0,
+        is_closed=False,
+        is_polyline=False,
+        is_reversed=False,
+    )
 
 
 def _points_in(source: object) -> Floats | None:
@@ -264,6 +291,8 @@ def sample_directrix(
     # Compiled code is loaded when it is needed, not when a file is read.
     from wrinkle_cad.strip.curve.sampling import Samples, sample_curve
 
+    if directrix.is_point:
+        return Samples(np.zeros(1), directrix.pieces[0].poles[:1].copy())
     if directrix.is_polyline:
         (piece,) = directrix.pieces
         return Samples(piece.knots.copy(), piece.poles.copy())

@@ -43,7 +43,8 @@ def sew_outline(p_line: Floats, q_line: Floats, *, tolerance: float) -> Outline:
         start_sides = [START_SIDE]
     points = np.vstack((p_kept, q_kept))
     q_count = len(points) - (len(p_kept) - 1) - len(end_sides) - len(start_sides)
-    if len(points) < 3 or q_count < 1:
+    # A rail that is a point has no side of its own.
+    if len(points) < 3 or q_count < (0 if len(q_line) == 1 else 1):
         size = float(np.ptp(p_line, axis=0).max())
         raise InputError(
             f"pattern outline - {size:g} mm long, its rails nowhere further apart than the "

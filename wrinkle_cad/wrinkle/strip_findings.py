@@ -1,0 +1,85 @@
+"""What is unsure about a strip."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from wrinkle_cad import settings
+from wrinkle_cad.errors import Finding
+from wrinkle_cad.strip.crossings import self_crossings
+from wrinkle_cad.strip.places import place_text
+from wrinkle_cad.strip.triangulation import Triangulation
+
+if TYPE_CHECKING:
+    from wrinkle_cad.strip.flat.unrolling import Unrolling
+
+
+def shape_findings(name: str, triangulation: Triangulation) -> tuple[Finding, ...]:
+    """Returns where a strip folds back on itself and where it passes through itself."""
+    return (*_fold_backs(name, triangulation), *_crossings(name, triangulation))
+
+
+def _fold_backs(name: str, triangulation: Triangulation) -> Iterator[Finding]:
+    (at,) = np.nonzero(triangulation.folded_back)
+    if len(at):
+        i, j = triangulation.bridges[at[0]]
+        middle = (triangulation.p[i] + triangulation.q[j]) / 2.0
+        yield Finding(
+            "folded-back",
+            "warning",
+            f"{name} folds back on itself at {place_text(middle, _size(triangulation))}"
+            f"{_more(len(at) - 1)}: between these rails there is no strip that does not."
+            " Move them apart there, or sample them more finely.",
+        )
+
+
+def _crossings(name: str, triangulation: Triangulation) -> Iterator[Finding]:
+    found = self_crossings(triangulation)
+    if found.count:
+        yield Finding(
+            "passes-through-itself",
+            "warning",
+            f"{name} passes through itself at {place_text(found.points[0], _size(triangulation))}:"
+            f" {found.count} of its {len(triangulation.triangles)} triangles cut others. It can be"
+            " made only if the rails are moved apart there.",
+        )
+
+
+def _more(count: int) -> str:
+    return f" and at {count} more place{'s' if count > 1 else ''}" if count else ""
+
+
+def _size(triangulation: Triangulation) -> float:
+    extent = np.ptp(np.vstack((triangulation.p, triangulation.q)), axis=0).tolist()
+    return math.hypot(*extent)
+
+
+def flat_findings(name: str, unrolling: Unrolling) -> tuple[Finding, ...]:
+    """Returns whether a strip's pattern will be in several pieces."""
+    if not unrolling.overlaps:
+        return ()
+    message = (
+        f"{name} covers itself when laid flat: its pattern is split at bridges into several pieces."
+    )
+    return (Finding("flat-overlaps", "warning", message),)
+
+
+def area_findings(name: str, error: float) -> tuple[Finding, ...]:
+    """Returns whether a strip's area is unsure.
+
+    Args:
+        name: of the strip.
+        error: relative; to which its area was integrated.
+    """
+    if error <= settings.AREA_SURE:
+        return ()
+    message = (
+        f"The area of {name} is known to {error:.0e} of it only, not to"
+        f" {settings.AREA_RELATIVE_ERROR:.0e} as that of a smooth strip. Look for kinks in its"
+        " rails."
+    )
+    return (Finding("area-uncertain", "warning", message),)
