@@ -22,6 +22,8 @@ from wrinkle_cad.settings import (
     Search,
 )
 
+from .closed_search import ClosedPath, closed_steps
+from .closed_strip import check_closed, closed_line, middle_turn, three_turns
 from .folding import ENERGIES
 from .global_search import best_steps
 from .inflection import fan_aware_twist, inflection_bridges
@@ -47,7 +49,9 @@ class Triangulation:
     """A strip of m+n-2 triangles between two sampled rails; every array is read-only.
 
     Bridges are numbered along the path, 0 to m+n-2; interior ones are all but the first and the
-    last. Counts are of interior bridges.
+    last. Counts are of interior bridges. A closed strip has m+n triangles and m+n+1 bridges, of
+    which the last is the first again, (m, n) further; all m+n are interior, so `fold` and
+    `bending_at` begin with the first one, at the seam.
     """
 
     p: Floats
@@ -105,29 +109,33 @@ class Triangulation:
     """Whether the last bridge is the first one again."""
 
     @property
+    def _interior(self) -> slice:
+        return slice(0 if self.is_closed else 1, -1)
+
+    @property
     def interior_count(self) -> int:
-        """Bridges between the first and the last."""
-        return len(self.bridges) - 2
+        """Bridges between the first and the last; all of a closed strip."""
+        return len(self.fold)
 
     @property
     def invalid_count(self) -> int:
         """Interior bridges that are not locally convex, inflections included."""
-        return int(np.count_nonzero(~self.valid[1:-1]))
+        return int(np.count_nonzero(~self.valid[self._interior]))
 
     @property
     def counted_invalid_count(self) -> int:
         """Invalid interior bridges at which the strip bends: those that the objective counted."""
-        return int(np.count_nonzero(self.counted))
+        return int(np.count_nonzero(self.counted[self._interior]))
 
     @property
     def fold_back_count(self) -> int:
         """Interior bridges at which the strip lies on itself: folds of 180 degrees."""
-        return int(np.count_nonzero(self.folded_back))
+        return int(np.count_nonzero(self.folded_back[self._interior]))
 
     @property
     def inflection_count(self) -> int:
         """Interior bridges that are invalid only because the bending changes sign or is 0."""
-        return int(np.count_nonzero(self.inflection))
+        return int(np.count_nonzero(self.inflection[self._interior]))
 
 
 def triangulate(
@@ -139,6 +147,7 @@ def triangulate(
     energy: Energy = ENERGY,
     planarity: float | None = None,
     price: float | None = PRICE,
+    closed: bool = False,
 ) -> Triangulation:
     """Returns the triangulation between two rails that is best by ordered criteria.
 
@@ -170,6 +179,9 @@ def triangulate(
         price: what an invalid bridge more is worth, from 0 to 1e6, or None. Of no effect with other
             criteria, with the paper's energy and in the local search.
 
+        closed: both rails are closed, their first points not repeated: the best triangulation over
+            all starting bridges, by global search. Where a rail begins does not matter.
+
     Raises:
         InputError: a rail is no (k, 3) array of finite points, both are single points, the rails
             coincide over more than one bank edge, all triangles have zero area, or an option is
@@ -189,11 +201,21 @@ def triangulate(
     has_price = search == "global" and energy == "hinge" and is_priced(names)
     price = _checked_price(price) if has_price else None
     p, q = checked_rails(p, q)
-    limit = checked_planarity(p, q, planarity)
-    check_rails_apart(p, q, limit)
-    least = None if price is None else least_bending(p, q, planarity=limit, nothing=round_off(p, q))
-    cost = None if price is None or least is None else invalid_cost(price, *least)
-    steps = _search(p, q, names, search, ENERGIES[energy], planarity=limit, invalid_cost=cost)
+    if closed:
+        check_closed(p, q, search)
+    # Every sample of a closed rail has two neighbours, the first and the last too.
+    p_line, q_line = (closed_line(p, 2), closed_line(q, 2)) if closed else (p, q)
+    limit = checked_planarity(p_line, q_line, planarity)
+    check_rails_apart(p_line, q_line, limit)
+    least = cost = start = None
+    if price is not None:
+        least = least_bending(p, q, planarity=limit, nothing=round_off(p, q), closed=closed)
+        cost = invalid_cost(price, *least)
+    if closed:
+        way = _search_around(p, q, names, ENERGIES[energy], planarity=limit, invalid_cost=cost)
+        start, steps = way.start, way.steps
+    else:
+        steps = _search(p, q, names, search, ENERGIES[energy], planarity=limit, invalid_cost=cost)
     return measured(
         p,
         q,
@@ -204,6 +226,7 @@ def triangulate(
         energy=energy,
         price=price,
         least_bending=None if least is None else least[0],
+        start=start,
     )
 
 
@@ -214,6 +237,21 @@ def _checked_price(price: float | None) -> float | None:
             " - None puts validity before any bending"
         )
     return None if price is None else float(price)
+
+
+def _search_around(
+    p: Floats,
+    q: Floats,
+    criteria: tuple[Criterion, ...],
+    energy: int,
+    *,
+    planarity: float,
+    invalid_cost: float | None,
+) -> ClosedPath:
+    count = p.shape[0] + q.shape[0]
+    weights = weights_of(criteria, bridge_count=count, invalid_cost=invalid_cost)
+    nothing = round_off(p, q)
+    return closed_steps(p, q, weights, planarity=planarity, nothing=nothing, energy=energy)
 
 
 def _search(
@@ -259,6 +297,7 @@ def measured(
     energy: Energy,
     price: float | None = None,
     least_bending: float | None = None,
+    start: tuple[int, int] | None = None,
 ) -> Triangulation:
     """Returns the triangulation that given steps make, with all its measures.
 
@@ -272,11 +311,18 @@ def measured(
         energy: "hinge" or "paper".
         price: what an invalid bridge was worth, if it had a price.
         least_bending: what that price was measured by.
+        start: i, j of the bridge where a closed strip, of m P-steps and n Q-steps, begins; None
+            for an open one.
 
     Raises:
         InputError: all triangles have zero area.
     """
-    path = walk(p, q, steps, planarity=planarity, nothing=round_off(p, q), energy=ENERGIES[energy])
+    rails, walked = (p, q), steps
+    if start is not None:
+        rails, walked = three_turns(p, q, start), np.tile(steps, 3)
+    path = walk(
+        *rails, walked, planarity=planarity, nothing=round_off(p, q), energy=ENERGIES[energy]
+    )
     if path.is_flat.all():
         raise InputError(
             "strip - every triangle has zero area - at least one must have some"
@@ -286,34 +332,43 @@ def measured(
         "p": p,
         "q": q,
         "bridges": path.bridges,
-        "triangles": _triangles(path.bridges, steps, p.shape[0]),
-        "steps": steps,
+        "steps": walked,
         "valid": path.valid,
-        "inflection": inflection_bridges(path, coarser_sagitta(p, q)),
+        "inflection": inflection_bridges(path, coarser_sagitta(*rails)),
         "counted": ~path.valid & path.is_bent,
         "folded_back": path.is_folded_back,
         "fold": path.fold,
         "twist": fan_aware_twist(path),
         "bending_at": path.bending_at,
+        "lengths": path.view[0],
+        "is_flat": path.is_flat,
     }
+    if start is not None:
+        arrays = middle_turn(arrays, len(steps))
+        arrays["bridges"] += np.array(start) - arrays["bridges"][0]
+    arrays["triangles"] = _triangles(arrays["bridges"], steps, len(p), len(q))
+    lengths, is_flat = arrays.pop("lengths"), arrays.pop("is_flat")
     for array in arrays.values():
         array.flags.writeable = False
     return Triangulation(
         **arrays,
-        bending=math.fsum(path.bending_at),
-        area=path.area,
-        length=math.fsum(path.view[0]),
-        degenerate_count=int(np.count_nonzero(path.is_flat)),
+        bending=math.fsum(arrays["bending_at"]),
+        area=path.area if start is None else path.area / 3,
+        length=math.fsum(lengths if start is None else lengths[:-1]),
+        degenerate_count=int(np.count_nonzero(is_flat)),
         planarity=planarity,
         criteria=criteria,
         search=search,
         energy=energy,
         price=price,
         least_bending=least_bending,
+        is_closed=start is not None,
     )
 
 
-def _triangles(bridges: npt.NDArray[np.int64], steps: Steps, m: int) -> npt.NDArray[np.int64]:
+def _triangles(
+    bridges: npt.NDArray[np.int64], steps: Steps, m: int, n: int
+) -> npt.NDArray[np.int64]:
     i, j = bridges[:-1].T
-    middle = np.where(steps == P_STEP, i + 1, m + j + 1)
-    return np.stack((i, middle, m + j), axis=1)
+    middle = np.where(steps == P_STEP, (i + 1) % m, m + (j + 1) % n)
+    return np.stack((i % m, middle, m + j % n), axis=1)

@@ -15,6 +15,8 @@ import numpy.typing as npt
 
 from wrinkle_cad.settings import PRICE_SAMPLES
 
+from .closed_search import closed_steps
+from .closed_strip import closed_line, three_turns
 from .folding import HINGE
 from .global_search import best_steps
 from .objective import weights_of
@@ -46,7 +48,9 @@ def thinned_rail(rail: Floats) -> Floats:
     return thinned
 
 
-def least_bending(p: Floats, q: Floats, *, planarity: float, nothing: float) -> tuple[float, int]:
+def least_bending(
+    p: Floats, q: Floats, *, planarity: float, nothing: float, closed: bool = False
+) -> tuple[float, int]:
     """Returns the least hinge energy of the strip, thinned where it is long, and its bridges.
 
     Args:
@@ -54,16 +58,27 @@ def least_bending(p: Floats, q: Floats, *, planarity: float, nothing: float) -> 
         q: (n, 3) float64, mm; checked samples of directrix Q.
         planarity: mm; see validity_matrix.
         nothing: mm; a distance that is round-off.
+        closed: both rails are closed, their first points not repeated.
 
     Returns:
         The least among all triangulations of the thinned strip with the fewest fold-backs and then
         the fewest triangles of zero area; how many interior bridges they have.
     """
-    p, q = thinned_rail(p), thinned_rail(q)
+    if closed:
+        # The sample where the rail is closed is the last of it too, and then left out again.
+        p, q = (thinned_rail(closed_line(rail))[:-1] for rail in (p, q))
+    else:
+        p, q = thinned_rail(p), thinned_rail(q)
     weights = weights_of(("bending",), bridge_count=p.shape[0] + q.shape[0])
-    steps = best_steps(p, q, weights, planarity=planarity, nothing=nothing, energy=HINGE)
-    path = walk(p, q, steps, planarity=planarity, nothing=nothing, energy=HINGE)
-    return math.fsum(path.bending_at), path.bending_at.size
+    if not closed:
+        steps = best_steps(p, q, weights, planarity=planarity, nothing=nothing, energy=HINGE)
+        path = walk(p, q, steps, planarity=planarity, nothing=nothing, energy=HINGE)
+        return math.fsum(path.bending_at), path.bending_at.size
+    way = closed_steps(p, q, weights, planarity=planarity, nothing=nothing, energy=HINGE)
+    rails = three_turns(p, q, way.start)
+    path = walk(*rails, np.tile(way.steps, 3), planarity=planarity, nothing=nothing, energy=HINGE)
+    count = len(way.steps)
+    return math.fsum(path.bending_at[count - 1 : 2 * count - 1]), count
 
 
 def invalid_cost(price: float, least: float, interior_count: int) -> float:

@@ -1,0 +1,114 @@
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from tests.strip import brute_force
+from tests.strip.test_closed_search import every_way_around, ring, triangles_of
+from wrinkle_cad.errors import InputError
+from wrinkle_cad.strip import triangulate
+from wrinkle_cad.strip.closed_strip import closed_line
+from wrinkle_cad.strip.validity_price import thinned_rail
+
+
+def circle(count: int, radius: float, z: float, turn: float = 0.0) -> np.ndarray:
+    t = np.linspace(0.0, 2 * np.pi, count, endpoint=False) + turn
+    return np.stack((radius * np.cos(t), radius * np.sin(t), z + 0 * t), axis=1)
+
+
+def wavy(count: int, radius: float, z: float, waves: int) -> np.ndarray:
+    rail = circle(count, radius, z)
+    rail[:, 2] += 0.08 * radius * np.sin(np.linspace(0, 2 * np.pi * waves, count, endpoint=False))
+    return rail
+
+
+@pytest.mark.parametrize("price", [None, 1.0, 50.0])
+def test_a_closed_strip_measures_what_its_triangles_do(price: float | None) -> None:
+    measured = 0
+    for seed in range(30):
+        p, q = ring(seed)
+        if min(len(p), len(q)) < 3 or seed % 5 == 2:
+            continue
+        found = triangulate(p, q, closed=True, planarity=brute_force.PLANARITY, price=price)
+        way = tuple(map(tuple, found.bridges.tolist()))
+        one = every_way_around(p, q, "hinge")[triangles_of(way, len(p), len(q))]
+        assert found.is_closed
+        assert found.interior_count == found.fold.size == len(p) + len(q)
+        assert found.fold_back_count == one["fold-backs"]
+        assert found.degenerate_count == one["degenerate"]
+        assert found.counted_invalid_count == one["invalid"]
+        for part in ("bending", "area", "length"):
+            assert brute_force.is_close(getattr(found, part), one[part]), part
+        measured += 1
+    assert measured > 8
+
+
+def test_the_last_bridge_is_the_first_one_again_and_triangles_count_around() -> None:
+    found = triangulate(circle(7, 5.0, 0.0), circle(9, 4.0, 3.0, 1.0), closed=True)
+    assert (found.bridges[-1] - found.bridges[0]).tolist() == [7, 9]
+    assert found.triangles.shape == (16, 3)
+    assert np.bincount(found.triangles.ravel()).size == 16
+    assert found.valid.shape == found.twist.shape == found.counted.shape == (17,)
+    assert found.valid[0] == found.valid[-1]
+
+
+@pytest.mark.parametrize("price", [None, 50.0])
+def test_where_closed_rails_begin_does_not_matter(price: float | None) -> None:
+    p, q = wavy(60, 50.0, 0.0, 5), wavy(70, 40.0, 60.0, 3)
+    found = triangulate(p, q, closed=True, price=price)
+    for first, second in ((1, 0), (17, 55), (59, 31)):
+        other = triangulate(
+            np.roll(p, first, axis=0), np.roll(q, second, axis=0), closed=True, price=price
+        )
+        assert other.counted_invalid_count == found.counted_invalid_count
+        assert other.bending == pytest.approx(found.bending, rel=1e-9)
+        assert other.area == pytest.approx(found.area, rel=1e-9)
+        assert other.planarity == pytest.approx(found.planarity, rel=1e-12)
+
+
+@pytest.mark.parametrize("turn", [0.0, 0.7, np.pi / 2, 3.1])
+def test_a_frustum_is_a_frustum_whatever_its_starts(turn: float) -> None:
+    p, q = circle(60, 50.0, 0.0), np.roll(circle(60, 30.0, 80.0), int(turn * 9), axis=0)
+    found = triangulate(p, q, closed=True)
+    side = 2 * 50 * np.sin(np.pi / 60), 2 * 30 * np.sin(np.pi / 60)
+    slope = np.hypot(80.0, 20 * np.cos(np.pi / 60))
+    assert found.area == pytest.approx(60 * slope * (side[0] + side[1]) / 2, rel=1e-12)
+    assert found.counted_invalid_count == 0
+    assert np.degrees(np.abs(found.fold)).max() < 6.1
+
+
+def test_at_least_as_many_bridges_are_valid_as_in_any_strip_cut_open() -> None:
+    p, q = wavy(24, 50.0, 0.0, 5), wavy(30, 40.0, 60.0, 3)
+    found = triangulate(p, q, closed=True, price=None, planarity=1e-6)
+    for i in range(0, 24, 5):
+        for j in range(30):
+            rails = (np.roll(rail, -k, axis=0) for rail, k in ((p, i), (q, j)))
+            opened = triangulate(
+                *(np.concatenate((rail, rail[:1])) for rail in rails), price=None, planarity=1e-6
+            )
+            assert found.counted_invalid_count <= opened.counted_invalid_count + 1
+
+
+def test_the_price_of_long_closed_strips_is_measured_on_thinned_ones() -> None:
+    p, q = wavy(400, 50.0, 0.0, 5), wavy(300, 40.0, 60.0, 3)
+    found = triangulate(p, q, closed=True)
+    thin = (thinned_rail(closed_line(rail))[:-1] for rail in (p, q))
+    least = triangulate(*thin, closed=True, criteria=("bending",), planarity=found.planarity)
+    assert found.least_bending == pytest.approx(least.bending, rel=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        (lambda p: p[:2], "Closed rail P has 2 samples: at least 3 are needed"),
+        (lambda p: np.concatenate((p, p[:1])), "Closed rail P ends with its first sample again"),
+    ],
+)
+def test_rails_that_cannot_be_closed_are_refused(change, message: str) -> None:
+    with pytest.raises(InputError, match=message):
+        triangulate(change(circle(8, 5.0, 0.0)), circle(8, 5.0, 3.0), closed=True)
+
+
+def test_the_local_search_finds_no_closed_strips() -> None:
+    with pytest.raises(InputError, match="The local search finds no closed strips"):
+        triangulate(circle(8, 5.0, 0.0), circle(8, 5.0, 3.0), closed=True, search="local")
