@@ -2,12 +2,15 @@ from __future__ import annotations
 
 import re
 import zlib
+from itertools import combinations
 
 import numpy as np
 import pytest
+import shapely
 
 from tests.pattern import strips
 from wrinkle_cad.errors import ExportError, InputError
+from wrinkle_cad.pattern.formats.paper import on_paper
 from wrinkle_cad.pattern.formats.pdf import pdf_file, write_pdf
 from wrinkle_cad.pattern.piece.making import make_pieces
 from wrinkle_cad.pattern.piece.options import PieceSettings
@@ -39,10 +42,11 @@ def test_a_small_piece_is_one_sheet_of_a4():
 def test_a_large_piece_takes_as_many_pages_as_its_windows_need():
     # Windows of 186 x 273 mm share 10 mm: 176 and 263 mm of progress.
     made = pdf_file(make_pieces(*strips.rectangle(600.0, 100.0), name="part"))
-    assert made.page_count == 3
-    assert all(box[0] > box[1] for box in page_boxes(made.content))
+    # With the picture of all pages first.
+    assert made.page_count == 1 + 3
+    assert all(box[0] > box[1] for box in page_boxes(made.content)[1:])
     tall = pdf_file(make_pieces(*strips.rectangle(350.0, 345.0), name="part"))
-    assert tall.page_count == 4
+    assert tall.page_count == 1 + 4
     assert all(box[0] < box[1] for box in page_boxes(tall.content))
 
 
@@ -63,10 +67,58 @@ def test_every_page_says_where_it_belongs():
 
     with mpl.rc_context({"pdf.fonttype": 42, "pdf.use14corefonts": True}):
         made = pdf_file(make_pieces(*strips.rectangle(600.0, 100.0), name="part"))
-    pages = streams(made.content)
+    first, *pages = streams(made.content)
+    assert "page 1 of 4: all pages" in first
+    assert "HOW THE PAGES GO TOGETHER" in first
     for number, page in enumerate(pages, start=1):
-        assert f"page {number} of 3, column {number}, row 1" in page
+        assert f"page {number + 1} of 4, row A, column {number}" in page
         assert "this bar is 50 mm" in page
+
+
+def test_no_piece_that_fits_on_one_sheet_is_cut_by_an_edge_of_paper():
+    pieces = [
+        *make_pieces(*strips.rectangle(250.0, 60.0), name="a"),
+        *make_pieces(*strips.rectangle(120.0, 150.0), name="b"),
+        *make_pieces(*strips.rectangle(100.0, 230.0), name="c"),
+        *make_pieces(*strips.rectangle(60.0, 30.0), name="d"),
+        *make_pieces(*strips.rectangle(500.0, 60.0), name="large"),
+    ]
+    groups = on_paper(pieces)
+    found = []
+    for group in groups:
+        frame = shapely.box(0.0, 0.0, *group.size)
+        for piece in group.pieces:
+            outline = shapely.Polygon(piece.cut_line)
+            assert frame.contains(outline)
+            found.append(piece.name)
+            if piece.name == "large":
+                windows = [
+                    shapely.box(*group.corner(*page), *(group.corner(*page) + group.window))
+                    for page in group.pages
+                ]
+                assert shapely.union_all(windows).covers(outline)
+            else:
+                assert len(group.pages) == 1
+        cuts = [shapely.Polygon(piece.cut_line) for piece in group.pieces]
+        assert all(not one.intersects(two) for one, two in combinations(cuts, 2))
+    assert sorted(found) == ["a", "b", "c", "d", "large"]
+    assert any(len(group.pieces) > 1 for group in groups)
+
+
+def test_rows_and_columns_name_a_page():
+    (group,) = on_paper(make_pieces(*strips.rectangle(400.0, 345.0), name="part"))
+    names = [group.name_of(*page) for page in group.pages]
+    assert names[0] == "row A, column 1"
+    assert len(set(names)) == len(names) >= 4
+
+
+def test_cut_sew_and_fold_lines_have_pens_of_their_own():
+    settings = PieceSettings(seam_allowance=(6.0,) * 4, rulings=True)
+    piece = make_pieces(*strips.random_strip(2), name="part", settings=settings)
+    page = streams(pdf_file(piece).content)[-1]
+    dashes = set(re.findall(r"(\[[^\]]*\]) [-\d.]+ d", page))
+    assert len(dashes) >= 3
+    assert re.search(r"\b1\.2 w\b", page)
 
 
 def test_empty_pages_are_left_out():

@@ -22,6 +22,7 @@ from ezdxf.layouts import BlockLayout
 
 from wrinkle_cad import settings
 from wrinkle_cad.errors import Finding
+from wrinkle_cad.pattern.piece.lettering import Lettering, lettering
 from wrinkle_cad.pattern.piece.notch_forms import notch_lines
 from wrinkle_cad.pattern.piece.options import NotchKind
 from wrinkle_cad.pattern.piece.outline import closed_turns
@@ -72,8 +73,9 @@ def block_document(
     for piece in pieces:
         name = _block_name(piece, names)
         block = document.blocks.new(name)
-        findings += _write_texts(block, piece, profile)
-        _write_lines(block, piece, profile)
+        lettered = lettering(piece, [text for text, _ in _texts(piece, profile)])
+        findings += _write_texts(block, piece, lettered, profile)
+        _write_lines(block, piece, lettered, profile)
         _write_marks(block, piece, profile)
         document.modelspace().add_blockref(name, (0.0, 0.0), dxfattribs={"layer": "1"})
     findings += text_changed("style name", style, _stated(style) or settings.STYLE_NAME)
@@ -97,7 +99,7 @@ def scale_piece(piece: PatternPiece) -> PatternPiece:
         cut_outs=(),
         widths=(0.0, 0.0, 0.0, 0.0),
         notches=(),
-        grain_line=frozen(((0.2 * side, 0.5 * side), (0.8 * side, 0.5 * side))),
+        grain_line=frozen(((0.2 * side, 0.2 * side), (0.8 * side, 0.2 * side))),
         stretch_line=None,
         rulings=frozen(np.zeros((0, 2, 2))),
         ruling_fold=frozen(np.zeros(0)),
@@ -120,26 +122,42 @@ def _block_name(piece: PatternPiece, taken: set[str]) -> str:
     return name
 
 
-def _write_texts(block: BlockLayout, piece: PatternPiece, profile: Profile) -> list[Finding]:
-    name = _stated(piece.name) or "PIECE"
-    size = _stated(piece.size) or settings.PIECE_SIZE
-    material = _stated(piece.material)
-    findings = [
-        *text_changed("piece name", piece.name, name),
-        *text_changed("size", piece.size, size),
-        *text_changed("material", piece.material, material),
+def block_text_box(piece: PatternPiece, profile: Profile) -> Floats:
+    """Returns the corners (4, 2) mm of the block of a piece's texts, for laying pieces out."""
+    return lettering(piece, [text for text, _ in _texts(piece, profile)]).box
+
+
+def _write_texts(
+    block: BlockLayout, piece: PatternPiece, lettered: Lettering, profile: Profile
+) -> list[Finding]:
+    for row, (_, layer) in zip(lettered.rows, _texts(piece, profile), strict=True):
+        block.add_text(
+            row.text,
+            height=row.height,
+            rotation=round(float(np.degrees(row.angle)), settings.DXF_DECIMALS),
+            dxfattribs={"layer": layer},
+        ).set_placement(rounded(row.position))
+    if lettered.leader is not None and "text" in profile.styles:
+        layer = profile.styles["text"].layer
+        block.add_line(*map(rounded, lettered.leader), dxfattribs={"layer": layer})
+    return [
+        *text_changed("piece name", piece.name, _stated(piece.name) or "PIECE"),
+        *text_changed("size", piece.size, _stated(piece.size) or settings.PIECE_SIZE),
+        *text_changed("material", piece.material, _stated(piece.material)),
     ]
+
+
+def _texts(piece: PatternPiece, profile: Profile) -> list[tuple[str, str]]:
+    """Returns the texts of a piece with their layers: what the standard asks for, then notes."""
     system = [
-        f"Piece Name: {name}",
-        f"Size: {size}",
+        f"Piece Name: {_stated(piece.name) or 'PIECE'}",
+        f"Size: {_stated(piece.size) or settings.PIECE_SIZE}",
         # Copies as drawn, then mirrored copies. Pieces for the other foot are pieces of their own.
         f"Quantity: {piece.quantity},0",
     ]
-    if material:
-        system.append(f"Material: {material}")
-    height = settings.TEXT_HEIGHT
-    corner = piece.grain_line.mean(axis=0)
-    _write_column(block, system, "1", corner, height)
+    if _stated(piece.material):
+        system.append(f"Material: {_stated(piece.material)}")
+    notes = []
     if "text" in profile.styles:
         notes = [RIGHT_SIDE, f"CHORD TOLERANCE {piece.tolerance:g} MM"]
         if piece.hand:
@@ -147,9 +165,8 @@ def _write_texts(block: BlockLayout, piece: PatternPiece, profile: Profile) -> l
         if len(piece.rulings) and "mountain" in profile.styles and "valley" in profile.styles:
             mountain, valley = profile.styles["mountain"], profile.styles["valley"]
             notes.append(f"RULINGS: COLOUR {mountain.colour} MOUNTAIN, {valley.colour} VALLEY")
-        below = corner - np.array((0.0, 1.5 * height * len(system)))
-        _write_column(block, notes, profile.styles["text"].layer, below, height)
-    return findings
+    note_layer = profile.styles["text"].layer if notes else ""
+    return [*((text, "1") for text in system), *((text, note_layer) for text in notes)]
 
 
 def _stated(text: str) -> str:
@@ -167,7 +184,9 @@ def _write_column(
         )
 
 
-def _write_lines(block: BlockLayout, piece: PatternPiece, profile: Profile) -> None:
+def _write_lines(
+    block: BlockLayout, piece: PatternPiece, lettered: Lettering, profile: Profile
+) -> None:
     styles = profile.styles
     _write_contour(block, piece.cut_line, piece.cut.corners, styles["cut"], is_closed=True)
     if piece.has_allowance and "sew" in styles:
@@ -175,15 +194,15 @@ def _write_lines(block: BlockLayout, piece: PatternPiece, profile: Profile) -> N
     for outline in piece.cut_outs:
         corners = np.abs(closed_turns(outline)) > settings.PATTERN_CORNER
         _write_contour(block, outline, corners, LayerStyle("11"), is_closed=True)
-    for line, fold in zip(piece.rulings, piece.ruling_fold, strict=True):
+    for line, fold in zip(lettered.rulings, lettered.ruling_fold, strict=True):
         role: Role = "mountain" if fold > 0.0 else "valley"
-        if abs(fold) >= settings.FLAT_FOLD and role in styles:
+        if role in styles:
             _write_contour(block, line, np.ones(2, dtype=np.bool_), styles[role], is_closed=False)
     if "mark" in styles:
         for notch in (notch for notch in piece.notches if not notch.is_cut):
             for line in notch_lines(notch):
                 _write_contour(block, line, np.ones(2, np.bool_), styles["mark"], is_closed=False)
-    _write_arrow(block, piece.grain_line, styles.get("grain"))
+    _write_arrow(block, lettered.grain_line, styles.get("grain"))
     if piece.stretch_line is not None:
         _write_arrow(block, piece.stretch_line, styles.get("stretch"))
 

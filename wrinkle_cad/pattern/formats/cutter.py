@@ -133,7 +133,8 @@ def _write_labels(
             findings += text_changed(f"text on {ascii_text(piece.name)}", label.text, text)
             height = round(label.height, settings.DXF_DECIMALS)
             given = attributes(profile.styles[label.role])
-            space.add_text(text, height=height, dxfattribs=given).set_placement(
+            angle = round(float(np.degrees(label.angle)), settings.DXF_DECIMALS)
+            space.add_text(text, height=height, rotation=angle, dxfattribs=given).set_placement(
                 rounded(label.position)
             )
     return findings

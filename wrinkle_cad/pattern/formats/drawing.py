@@ -8,10 +8,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-import numpy as np
-import shapely
-
-from wrinkle_cad import settings
+from wrinkle_cad.pattern.piece.lettering import arrow_lines, lettering
 from wrinkle_cad.pattern.piece.notch_forms import notch_lines
 from wrinkle_cad.pattern.piece.piece import Floats, PatternPiece, frozen
 
@@ -37,12 +34,13 @@ class Spot:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Label:
-    """One line of text, its left end on the base line at (2,) mm, ``height`` mm high."""
+    """One line of text: the left end of its base line (2,) mm, its height in mm, angle in rad."""
 
     role: Role
     text: str
     position: Floats
     height: float
+    angle: float = 0.0
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -59,13 +57,14 @@ def draw(piece: PatternPiece) -> Drawing:
     strokes: list[Stroke] = []
     if piece.has_allowance:
         strokes.append(Stroke("sew", piece.sew_line, is_closed=True))
-    for line, fold in zip(piece.rulings, piece.ruling_fold, strict=True):
-        # A ruling between facets of one plane is not folded: there is nothing to draw.
-        if abs(fold) >= settings.FLAT_FOLD:
-            strokes.append(Stroke("mountain" if fold > 0.0 else "valley", line))
-    strokes.append(Stroke("grain", piece.grain_line))
+    lettered = lettering(piece, piece.texts)
+    for line, fold in zip(lettered.rulings, lettered.ruling_fold, strict=True):
+        strokes.append(Stroke("mountain" if fold > 0.0 else "valley", line))
+    strokes += [Stroke("grain", line) for line in arrow_lines(lettered.grain_line)]
     if piece.stretch_line is not None:
-        strokes.append(Stroke("stretch", piece.stretch_line))
+        strokes += [Stroke("stretch", line) for line in arrow_lines(piece.stretch_line)]
+    if lettered.leader is not None:
+        strokes.append(Stroke("text", lettered.leader))
     for notch in piece.notches:
         # Without an allowance a slit would go into the product.
         role: Role = "notch" if notch.is_cut else "mark"
@@ -73,29 +72,10 @@ def draw(piece: PatternPiece) -> Drawing:
     strokes += [Stroke("cut", outline, is_closed=True) for outline in piece.cut_outs]
     strokes.append(Stroke("cut", piece.cut_line, is_closed=True))
     spots = tuple(Spot("punch", frozen(hole)) for hole in piece.drill_holes)
-    return Drawing(tuple(strokes), spots, _labels(piece))
+    labels = (Label("text", row.text, row.position, row.height, row.angle) for row in lettered.rows)
+    return Drawing(tuple(strokes), spots, tuple(labels))
 
 
-def _labels(piece: PatternPiece) -> tuple[Label, ...]:
-    """Returns the texts on a roomy spot, as large as fits inside the sew line, within limits."""
-    region = shapely.Polygon(piece.sew_line)
-    circle = shapely.maximum_inscribed_circle(region, piece.tolerance)
-    spots = (np.array(circle.coords[0]), piece.grain_line.mean(axis=0))
-    lines = piece.texts
-    size = np.array((0.9 * max(map(len, lines)), 1.5 * len(lines)))
-    shapely.prepare(region)
-    middle, height = spots[0], settings.TEXT_HEIGHT_MIN
-    for trial in np.geomspace(settings.TEXT_HEIGHT, settings.TEXT_HEIGHT_MIN, 12):
-        boxes = [
-            shapely.box(*(spot - 0.5 * trial * size), *(spot + 0.5 * trial * size))
-            for spot in spots
-        ]
-        fits = np.flatnonzero(shapely.contains(region, boxes))
-        if len(fits):
-            middle, height = spots[fits[0]], float(trial)
-            break
-    left, top = middle + 0.5 * height * size * (-1.0, 1.0)
-    return tuple(
-        Label("text", text, frozen((left, top - (1.5 * row + 1.2) * height)), height)
-        for row, text in enumerate(lines)
-    )
+def text_box(piece: PatternPiece) -> Floats:
+    """Returns the corners (4, 2) mm of the block of a piece's texts, for laying pieces out."""
+    return lettering(piece, piece.texts).box

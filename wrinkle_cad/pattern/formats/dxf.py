@@ -13,6 +13,7 @@ from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from datetime import datetime
+from functools import partial
 from pathlib import Path
 from typing import Final, get_args
 
@@ -26,8 +27,9 @@ from wrinkle_cad.pattern.piece.piece import PatternPiece
 from wrinkle_cad.pattern.piece.stacking import laid_out
 from wrinkle_cad.settings import Curves, DxfVersion
 
-from .aama import block_document, scale_piece
+from .aama import block_document, block_text_box, scale_piece
 from .cutter import cutter_document
+from .drawing import text_box
 from .layers import Profile, profile_from
 from .stamping import EPOCH, stamped
 
@@ -81,13 +83,17 @@ def dxf_file(
         if chosen.is_blocks:
             everything = [*pieces, scale_piece(pieces[0])] if test_square else pieces
             document, findings = block_document(
-                laid_out(everything), chosen, style=style, release=release, timestamp=moment
+                laid_out(everything, reach=partial(block_text_box, profile=chosen)),
+                chosen,
+                style=style,
+                release=release,
+                timestamp=moment,
             )
             if release != "R12":
                 findings = (*findings, _layout_blocks_finding(chosen.name, release))
         else:
             document, findings = cutter_document(
-                laid_out(pieces),
+                laid_out(pieces, reach=text_box),
                 chosen,
                 release="R2000" if release == "R12" else release,
                 curves=curves,

@@ -1,40 +1,49 @@
-"""Pattern pieces as PDF, 1:1, tiled on A4 to be printed at home and taped together.
+"""Pattern pieces as PDF, 1:1 on A4, to be printed at home.
 
-Every page shows 10 mm of its neighbours, crosses where pages meet, its place among them and a bar
-of 50 mm to check that the printer did not scale. Empty pages are left out.
+Where there are several pages, the first is a picture of all others with their numbers. A piece that
+fits on one sheet is not cut by an edge of paper; a larger one has pages in rows and columns that
+share 10 mm, with crosses where they meet. Lines are told apart in black and white: cut lines are
+thick, sew lines dashed, folds dash-dotted (mountain) and dotted (valley). Every page has a bar of
+50 mm to check that the printer did not scale.
 """
 
 from __future__ import annotations
 
 import io
-import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from types import MappingProxyType
 from typing import Any, Final
 
 import numpy as np
-import shapely
 
 from wrinkle_cad import settings
 from wrinkle_cad.errors import ExportError, Finding, InputError
 from wrinkle_cad.files.atomic import write_atomically
 from wrinkle_cad.pattern.piece.piece import Floats, PatternPiece
-from wrinkle_cad.pattern.piece.stacking import laid_out
 
 from .drawing import Drawing, draw
-from .layers import LINE_TYPES, Profile, profile_from
+from .layers import Profile, Role, profile_from
+from .paper import LONG, MARGIN, OVERLAP, SHORT, Group, on_paper
 from .plain_text import ascii_text, text_changed
 from .svg import colour_of
 
-_SHORT, _LONG = 210.0, 297.0
-_MARGIN: Final = 12.0
-"""mm that no printer needs to reach."""
-_OVERLAP: Final = 10.0
-"""mm that neighbouring pages share."""
 _BAR: Final = 50.0
 _INCH: Final = 25.4
 _POINTS_PER_MM: Final = 72.0 / _INCH
+_PENS: Final[Mapping[Role, tuple[float, tuple[float, ...], str]]] = MappingProxyType(
+    {
+        "cut": (1.2, (), "cut"),
+        "sew": (0.5, (3.0, 1.5), "sew"),
+        "mountain": (0.5, (5.0, 1.5, 0.5, 1.5), "fold, mountain"),
+        "valley": (0.5, (0.5, 1.5), "fold, valley"),
+        "notch": (0.8, (), "notch"),
+        "grain": (0.5, (), "grain"),
+    }
+)
+"""Role: line width in points, dashes and gaps in mm, and its name in the legend."""
+_PLAIN_PEN: Final = (0.5, ())
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -46,34 +55,10 @@ class PdfFile:
     findings: tuple[Finding, ...]
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class _Tiling:
-    """Pages of ``page`` (2,) mm, their windows ``step`` (2,) mm apart, the first at ``low``."""
-
-    page: Floats
-    low: Floats
-    columns: int
-    rows: int
-
-    @property
-    def window(self) -> Floats:
-        size: Floats = self.page - 2.0 * _MARGIN
-        return size
-
-    @property
-    def step(self) -> Floats:
-        size: Floats = self.window - _OVERLAP
-        return size
-
-    def corner(self, column: int, row: int) -> Floats:
-        place: Floats = self.low + self.step * (column, row)
-        return place
-
-
 def pdf_file(
     pieces: Sequence[PatternPiece], *, profile: str | Path | Profile = settings.DXF_PROFILE
 ) -> PdfFile:
-    """Returns a tiled PDF of all pieces, laid out as in the DXF; the same bytes every time.
+    """Returns a PDF of all pieces at full size; the same bytes every time.
 
     Args:
         pieces: at least one.
@@ -83,31 +68,46 @@ def pdf_file(
         InputError: no pieces, or an unknown profile.
     """
     if not pieces:
-        raise InputError("PDF - no pieces - at least one - make a pattern first")
+        raise InputError("There are no pieces to write as PDF. Make a pattern first.")
     # Only a PDF needs matplotlib, which takes a third of a second to load.
     from matplotlib.backends.backend_pdf import PdfPages
     from matplotlib.figure import Figure
 
     chosen = profile if isinstance(profile, Profile) else profile_from(profile)
-    placed = laid_out(pieces)
-    drawings = [draw(piece) for piece in placed]
-    tiling = _tiling(drawings)
-    pages = _inked_pages(drawings, tiling)
+    groups = on_paper(pieces)
+    own_pages = sum(len(group.pages) for group in groups)
+    has_overview = own_pages > 1
+    page_count = own_pages + has_overview
+    changed: list[Finding] = []
     stream = io.BytesIO()
     with PdfPages(stream, metadata={"CreationDate": None, "Producer": None}) as book:
-        for number, (column, row) in enumerate(pages, start=1):
-            figure = Figure(figsize=tuple(tiling.page / _INCH))
-            _draw_page(figure, drawings, chosen, tiling, column, row)
-            place = f"page {number} of {len(pages)}, column {column + 1}, row {row + 1}"
-            _draw_foot(figure, tiling, place)
-            book.savefig(figure)
-    findings = tuple(
+        if has_overview:
+            first = Figure(figsize=(SHORT / _INCH, LONG / _INCH))
+            _draw_overview(first, groups, chosen)
+            _draw_foot(first, np.array((SHORT, LONG)), f"page 1 of {page_count}: all pages")
+            book.savefig(first)
+        number = int(has_overview)
+        for group in groups:
+            drawings = [draw(piece) for piece in group.pieces]
+            changed += _changed(drawings)
+            for column, row in group.pages:
+                number += 1
+                figure = Figure(figsize=tuple(group.page / _INCH))
+                _draw_page(figure, group, drawings, chosen, column, row)
+                place = group.name_of(column, row)
+                told = f"page {number} of {page_count}" + (f", {place}" if place else "")
+                _draw_foot(figure, group.page, told)
+                book.savefig(figure)
+    return PdfFile(stream.getvalue(), page_count, tuple(changed))
+
+
+def _changed(drawings: Sequence[Drawing]) -> list[Finding]:
+    return [
         finding
         for drawing in drawings
         for label in drawing.labels
         for finding in text_changed("text in the PDF", label.text, ascii_text(label.text))
-    )
-    return PdfFile(stream.getvalue(), len(pages), findings)
+    ]
 
 
 def write_pdf(
@@ -116,7 +116,7 @@ def write_pdf(
     *,
     profile: str | Path | Profile = settings.DXF_PROFILE,
 ) -> tuple[Finding, ...]:
-    """Writes a tiled PDF, whole or not at all, and returns the findings of ``pdf_file``.
+    """Writes a PDF, whole or not at all, and returns the findings of ``pdf_file``.
 
     Raises:
         InputError: as ``pdf_file``.
@@ -126,54 +126,21 @@ def write_pdf(
     try:
         write_atomically(path, made.content)
     except OSError as error:
-        raise ExportError(path, "PDF", f"{error.strerror} - check the folder") from error
+        raise ExportError(path, "PDF", f"{error.strerror}. Check the folder.") from error
     return made.findings
-
-
-def _tiling(drawings: Sequence[Drawing]) -> _Tiling:
-    """Returns the tiling with the fewest pages, upright if both ways need as many."""
-    points = np.vstack([stroke.points for drawing in drawings for stroke in drawing.strokes])
-    low, high = points.min(axis=0) - 1.0, points.max(axis=0) + 1.0
-    tilings = []
-    for page in ((_SHORT, _LONG), (_LONG, _SHORT)):
-        step = _Tiling(np.array(page), low, 1, 1).step
-        columns, rows = (
-            max(1, math.ceil((size - _OVERLAP) / way))
-            for size, way in zip(high - low, step, strict=True)
-        )
-        tilings.append(_Tiling(np.array(page), low, columns, rows))
-    return min(tilings, key=lambda tiling: tiling.columns * tiling.rows)
-
-
-def _inked_pages(drawings: Sequence[Drawing], tiling: _Tiling) -> list[tuple[int, int]]:
-    """Returns (column, row) of the pages with something on them, from the top left."""
-    ink = shapely.MultiLineString(
-        [
-            np.vstack((stroke.points, stroke.points[:1])) if stroke.is_closed else stroke.points
-            for drawing in drawings
-            for stroke in drawing.strokes
-        ]
-    )
-    pages = []
-    for row in reversed(range(tiling.rows)):
-        for column in range(tiling.columns):
-            corner = tiling.corner(column, row)
-            if shapely.box(*corner, *(corner + tiling.window)).intersects(ink):
-                pages.append((column, row))
-    return pages
 
 
 def _draw_page(
     figure: Any,
+    group: Group,
     drawings: Sequence[Drawing],
     profile: Profile,
-    tiling: _Tiling,
     column: int,
     row: int,
 ) -> None:
-    low = tiling.corner(column, row)
-    high = low + tiling.window
-    start, size = _MARGIN / tiling.page, tiling.window / tiling.page
+    low = group.corner(column, row)
+    high = low + group.window
+    start, size = MARGIN / group.page, group.window / group.page
     axes = figure.add_axes((*start, *size), xlim=(low[0], high[0]), ylim=(low[1], high[1]))
     axes.set_xticks([])
     axes.set_yticks([])
@@ -182,54 +149,134 @@ def _draw_page(
     for drawing in drawings:
         _draw_lines(axes, drawing, profile)
         _draw_labels(axes, drawing, profile, low, high)
-    for x in (low[0] + 0.5 * _OVERLAP, high[0] - 0.5 * _OVERLAP):
-        for y in (low[1] + 0.5 * _OVERLAP, high[1] - 0.5 * _OVERLAP):
-            axes.plot(x, y, marker="+", markersize=_OVERLAP * _POINTS_PER_MM, color="0.4", lw=0.3)
+    if len(group.pages) == 1:
+        return
+    for x in (low[0] + 0.5 * OVERLAP, high[0] - 0.5 * OVERLAP):
+        for y in (low[1] + 0.5 * OVERLAP, high[1] - 0.5 * OVERLAP):
+            axes.plot(x, y, marker="+", markersize=OVERLAP * _POINTS_PER_MM, color="0.4", lw=0.3)
 
 
-def _draw_lines(axes: Any, drawing: Drawing, profile: Profile) -> None:
+def _draw_lines(axes: Any, drawing: Drawing, profile: Profile, scale: float = 1.0) -> None:
     for stroke in drawing.strokes:
         style = profile.styles.get(stroke.role)
         if style is None:
             continue
         closing = stroke.points[:1] if stroke.is_closed else stroke.points[:0]
         points = np.vstack((stroke.points, closing))
-        dashes = LINE_TYPES[style.line_type][1][1:]
-        pattern: Any = "-"
-        if dashes:
-            pattern = (0, [(abs(dash) or 0.25) * _POINTS_PER_MM / 0.7 for dash in dashes])
-        axes.plot(*points.T, color=colour_of(style), linewidth=0.7, linestyle=pattern)
+        width, dashes = _PENS.get(stroke.role, _PLAIN_PEN)[:2]
+        axes.plot(
+            *points.T,
+            color=colour_of(style),
+            linewidth=width * scale,
+            linestyle=_pattern(width, dashes),
+        )
     for spot in drawing.spots:
         style = profile.styles.get(spot.role)
         if style is not None:
             axes.plot(*spot.position, marker="o", markersize=3, mfc="none", color=colour_of(style))
 
 
+def _pattern(width: float, dashes: tuple[float, ...]) -> Any:
+    """Returns dashes in mm as matplotlib has them, which counts in line widths."""
+    return (0, [dash * _POINTS_PER_MM / width for dash in dashes]) if dashes else "-"
+
+
 def _draw_labels(axes: Any, drawing: Drawing, profile: Profile, low: Floats, high: Floats) -> None:
     for label in drawing.labels:
         style = profile.styles.get(label.role)
-        inside = np.all(label.position > low - (_LONG, 0.0)) and np.all(label.position < high)
-        if style is not None and inside:
+        near = np.all(label.position > low - LONG) and np.all(label.position < high + LONG)
+        if style is not None and near:
             axes.text(
                 *label.position,
                 ascii_text(label.text),
                 fontsize=label.height * _POINTS_PER_MM / 0.73,
                 color=colour_of(style),
+                rotation=np.degrees(label.angle),
+                rotation_mode="anchor",
                 clip_on=True,
                 parse_math=False,
             )
 
 
-def _draw_foot(figure: Any, tiling: _Tiling, place: str) -> None:
+def _draw_overview(figure: Any, groups: Sequence[Group], profile: Profile) -> None:
+    """Draws all pages small, with their numbers, and what the lines mean."""
+    axes = figure.add_axes((0.0, 0.0, 1.0, 1.0), xlim=(0.0, SHORT), ylim=(0.0, LONG))
+    axes.set_axis_off()
+    top = LONG - MARGIN
+    axes.text(MARGIN, top - 4.0, "HOW THE PAGES GO TOGETHER", fontsize=11)
+    _draw_legend(axes, profile, top - 12.0)
+    room = np.array((SHORT - 2.0 * MARGIN, LONG - 2.0 * MARGIN - 50.0))
+    places, scale = _overview_places(groups, room)
+    number = 1
+    for group, place in zip(groups, places, strict=True):
+        corner = np.array((MARGIN, MARGIN + 8.0)) + place
+        inset = figure.add_axes(
+            (*(corner / (SHORT, LONG)), *(scale * group.size / (SHORT, LONG))),
+            xlim=(0.0, group.size[0]),
+            ylim=(0.0, group.size[1]),
+        )
+        inset.set_axis_off()
+        for piece in group.pieces:
+            outline = np.vstack((piece.cut_line, piece.cut_line[:1]))
+            inset.plot(*outline.T, color="black", linewidth=0.6)
+        for column, row in group.pages:
+            number += 1
+            low = group.corner(column, row)
+            frame = low + group.window * np.array(((0, 0), (1, 0), (1, 1), (0, 1), (0, 0)))
+            inset.plot(*frame.T, color="0.5", linewidth=0.4)
+            middle = low + 0.5 * group.window
+            told = f"{number}\n{group.name_of(column, row)}".strip()
+            inset.text(*middle, told, fontsize=7, ha="center", va="center", color="0.3")
+
+
+def _overview_places(
+    groups: Sequence[Group], room: Floats, gap: float = 4.0
+) -> tuple[list[Floats], float]:
+    """Returns lower left corners (2,) mm of the groups in shelves, and the scale that fits."""
+    scale = 0.5
+    while True:
+        places, left, bottom, shelf = [], 0.0, 0.0, 0.0
+        for group in groups:
+            width, height = scale * group.size
+            if left > 0.0 and left + width > room[0]:
+                left, bottom, shelf = 0.0, bottom + shelf + gap, 0.0
+            places.append(np.array((left, bottom)))
+            left, shelf = left + width + gap, max(shelf, height)
+            if width > room[0] or bottom + height > room[1]:
+                break
+        else:
+            # The first group stands at the top.
+            heights = [float(scale * group.size[1]) for group in groups]
+            for i, place in enumerate(places):
+                places[i] = np.array((place[0], room[1] - place[1] - heights[i]))
+            return places, scale
+        scale *= 0.9
+
+
+def _draw_legend(axes: Any, profile: Profile, top: float) -> None:
+    named = [(role, pen) for role, pen in _PENS.items() if role in profile.styles]
+    for i, (role, (width, dashes, name)) in enumerate(named):
+        x, y = MARGIN + 62.0 * (i % 3), top - 6.0 * (i // 3)
+        axes.plot(
+            (x, x + 20.0),
+            (y, y),
+            color=colour_of(profile.styles[role]),
+            linewidth=width,
+            linestyle=_pattern(width, dashes),
+        )
+        axes.text(x + 22.0, y - 1.0, name, fontsize=8)
+
+
+def _draw_foot(figure: Any, page: Floats, place: str) -> None:
     """Draws the bar for the scale check and the page's place below its window."""
     axes = figure.add_axes(
-        (0.0, 0.0, 1.0, _MARGIN / tiling.page[1]), xlim=(0.0, tiling.page[0]), ylim=(0.0, _MARGIN)
+        (0.0, 0.0, 1.0, MARGIN / page[1]), xlim=(0.0, page[0]), ylim=(0.0, MARGIN)
     )
     axes.set_axis_off()
-    level = 0.45 * _MARGIN
-    axes.plot((_MARGIN, _MARGIN + _BAR), (level, level), color="black", linewidth=0.7)
+    level = 0.45 * MARGIN
+    axes.plot((MARGIN, MARGIN + _BAR), (level, level), color="black", linewidth=0.7)
     for i in range(6):
-        x = _MARGIN + 0.2 * _BAR * i
+        x = MARGIN + 0.2 * _BAR * i
         axes.plot((x, x), (level, level + 2.0), color="black", linewidth=0.7)
-    note = f"this bar is {_BAR:g} mm: print at 100 %   -   {place}"
-    axes.text(_MARGIN + _BAR + 4.0, level, note, fontsize=8)
+    note = f"this bar is {_BAR:g} mm: print at 100 %      {place}"
+    axes.text(MARGIN + _BAR + 4.0, level, note, fontsize=8)

@@ -21,7 +21,7 @@ from wrinkle_cad.files.names import one_line
 from wrinkle_cad.pattern.piece.piece import Floats, PatternPiece
 from wrinkle_cad.pattern.piece.stacking import laid_out
 
-from .drawing import Label, Spot, Stroke, draw
+from .drawing import Label, Spot, Stroke, draw, text_box
 from .layers import LINE_TYPES, LayerStyle, Profile, profile_from
 from .plain_text import text_changed
 
@@ -44,14 +44,12 @@ def svg_bytes(
         InputError: no pieces, or an unknown profile.
     """
     if not pieces:
-        raise InputError("SVG - no pieces - at least one - make a pattern first")
+        raise InputError("There are no pieces to write as SVG. Make a pattern first.")
     chosen = profile if isinstance(profile, Profile) else profile_from(profile)
-    placed = laid_out(pieces)
+    placed = laid_out(pieces, reach=text_box)
     corners = np.vstack([piece.cut_line for piece in placed])
-    labels = [label for piece in placed for label in draw(piece).labels]
-    reach = [label.position[0] + 0.9 * label.height * len(label.text) for label in labels]
-    low = np.minimum(corners.min(axis=0), [min(label.position[0] for label in labels), 0.0])
-    high = np.maximum(corners.max(axis=0), [max(reach), 0.0])
+    corners = np.vstack((corners, *(text_box(piece) for piece in placed)))
+    low, high = corners.min(axis=0), corners.max(axis=0)
     high[0] = max(high[0], low[0] + _BAR)
     low[1] -= 2.0 * _MARGIN
     left, top = low[0] - _MARGIN, high[1] + _MARGIN
@@ -84,7 +82,7 @@ def write_svg(
     try:
         write_atomically(path, content)
     except OSError as error:
-        raise ExportError(path, "SVG", f"{error.strerror} - check the folder") from error
+        raise ExportError(path, "SVG", f"{error.strerror}. Check the folder.") from error
     texts = [text for piece in pieces for text in piece.texts]
     return tuple(
         finding for text in texts for finding in text_changed("text in the SVG", text, _plain(text))
@@ -121,9 +119,12 @@ def _element(item: Stroke | Spot | Label, style: LayerStyle, left: float, top: f
     colour = colour_of(style)
     if isinstance(item, Label):
         x, y = item.position[0] - left, top - item.position[1]
-        # Letters are 0.7 of the font size high.
+        # Letters are 0.73 of the font size high.
+        turn = f"rotate({_number(-np.degrees(item.angle))} {_number(x)} {_number(y)})"
+        turned = f' transform="{turn}"' if item.angle else ""
         return (
-            f'<text x="{_number(x)}" y="{_number(y)}" font-size="{_number(item.height / 0.7)}" '
+            f'<text x="{_number(x)}" y="{_number(y)}"{turned} '
+            f'font-size="{_number(item.height / 0.73)}" '
             f'font-family="sans-serif" fill="{colour}">{_escaped(item.text)}</text>'
         )
     pen = f'stroke="{colour}" stroke-width="{_LINE_WIDTH}"'

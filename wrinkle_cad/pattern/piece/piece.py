@@ -128,8 +128,7 @@ class PatternPiece:
         lines = [self.name, f"SIZE {self.size}".strip(), f"QUANTITY {self.quantity}", RIGHT_SIDE]
         if self.material:
             lines.append(f"MATERIAL {self.material}")
-        lines.append(f"UNITS MM, CHORD TOLERANCE {self.tolerance:g} MM")
-        return tuple(lines)
+        return (*lines, "UNITS MM", f"CHORD TOLERANCE {self.tolerance:g} MM")
 
     def moved(self, offset: Floats) -> PatternPiece:
         """Returns the piece shifted by ``offset``: (2,) mm."""
