@@ -520,12 +520,17 @@ def test_an_overlap_with_equal_corners_is_seen() -> None:
     assert annulus(2.0, count=81).overlaps
 
 
-def test_a_fan_wider_than_a_full_turn_overlaps() -> None:
-    angle = np.linspace(0, 7.0, 60)
-    height = np.cumsum(np.full(60, 0.2))
-    p = np.stack((10 * np.cos(angle), 10 * np.sin(angle), height), axis=1)
-    q = np.array([[0.0, 0, 0], [0.0, 0, 1e-3]])
-    assert unroll(triangulate(p, q, criteria=("length",))).overlaps
+@pytest.mark.parametrize(("turn", "overlaps"), [(7.0, False), (8.0, True)])
+def test_a_fan_overlaps_when_its_flat_angle_is_more_than_a_full_turn(
+    turn: float, overlaps: bool
+) -> None:
+    angle = np.linspace(0, turn, 60)
+    p = np.stack((10 * np.cos(angle), 10 * np.sin(angle), np.linspace(0.2, 12.0, 60)), axis=1)
+    flat = unroll(triangulate(p, np.array([[0.0, 0, 0], [0.0, 0, 1e-3]]), criteria=("length",)))
+    rays = flat.p - flat.q[0]
+    heading = np.unwrap(np.arctan2(rays[:, 1], rays[:, 0]))
+    assert (abs(heading[-1] - heading[0]) > 2 * np.pi) == overlaps
+    assert flat.overlaps == overlaps
 
 
 def test_results_are_read_only_and_repeatable() -> None:
