@@ -22,6 +22,7 @@ from wrinkle_cad.cad.exchange.read import read_cad
 from wrinkle_cad.cad.exchange.shapes import Part
 from wrinkle_cad.cad.exchange.write import write_step
 from wrinkle_cad.cad.kernel.topology import faces_of
+from wrinkle_cad.cad.kernel.versions import shape_list
 from wrinkle_cad.cad.upper import carve as carving
 from wrinkle_cad.cad.upper import split as splitting
 from wrinkle_cad.cad.upper import stitch as stitching
@@ -75,8 +76,8 @@ class BareKernel:
             projection.Add(smooth_edge(side.points))
         projection.Build()
         splitter = BRepAlgoAPI_Splitter()
-        splitter.SetArguments(splitting._listed([face]))
-        splitter.SetTools(splitting._listed([projection.Projection()]))
+        splitter.SetArguments(shape_list([face]))
+        splitter.SetTools(shape_list([projection.Projection()]))
         splitter.Build()
         sewing = BRepBuilderAPI_Sewing(settings.SEWING)
         for part in self.faces:

@@ -7,6 +7,7 @@ import pytest
 import shapely
 
 from tests.pattern import strips
+from tests.seeds import seeds
 from wrinkle_cad.pattern.piece.allowance import cut_outline
 from wrinkle_cad.pattern.piece.making import make_pieces
 from wrinkle_cad.pattern.piece.options import PieceSettings
@@ -69,7 +70,7 @@ def check_cut(piece, mitre_limit):
     assert np.all(shapely.covers(cut, rays))
 
 
-@pytest.mark.parametrize("seed", range(200))
+@pytest.mark.parametrize("seed", seeds(200))
 def test_every_random_strip_gets_a_simple_cut_line_at_its_widths(seed):
     random = np.random.default_rng(1000 + seed)
     unrolling, triangulation = strips.random_strip(seed)

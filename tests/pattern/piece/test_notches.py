@@ -5,6 +5,7 @@ import pytest
 import shapely
 
 from tests.pattern import strips
+from tests.seeds import seeds
 from wrinkle_cad.errors import InputError
 from wrinkle_cad.pattern.formats.drawing import draw
 from wrinkle_cad.pattern.piece.making import make_pieces
@@ -91,7 +92,7 @@ def seam_line(piece, side):
     return shapely.LineString(points if side == 0 else points[::-1])
 
 
-@pytest.mark.parametrize("seed", range(25))
+@pytest.mark.parametrize("seed", seeds(25))
 def test_notches_stand_on_the_cut_line_and_point_to_their_seam(seed):
     settings = PieceSettings(
         seam_allowance=(6.0, 3.0, 4.0, 4.0),

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
+from tests.seeds import seeds
 from tests.strip.curve.test_sampling import b_spline, chord_gaps
 from wrinkle_cad.strip.curve.joint import sample_against
 from wrinkle_cad.strip.curve.polyline import arc_lengths, points_at, segment_lengths
@@ -136,7 +137,7 @@ def test_a_symmetric_tab_is_treated_alike_on_both_its_sides() -> None:
         assert x == pytest.approx(-x[::-1], abs=1e-9)
 
 
-@pytest.mark.parametrize("seed", range(30))
+@pytest.mark.parametrize("seed", seeds(30))
 def test_smooth_rails_of_similar_shape_get_at_most_half_as_many_again(seed: int) -> None:
     generator = np.random.default_rng(seed)
     point_at = b_spline(3, seed, poles=10)

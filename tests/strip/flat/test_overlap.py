@@ -5,6 +5,7 @@ import pytest
 from numpy.typing import NDArray
 from shapely import Polygon, union_all
 
+from tests.seeds import seeds
 from wrinkle_cad.strip.flat.overlap import is_overlapping
 from wrinkle_cad.strip.flat.unrolling import unroll
 from wrinkle_cad.strip.triangulation import Triangulation, triangulate
@@ -35,10 +36,7 @@ def curling(seed: int) -> Triangulation:
     return triangulate(p, q, criteria=("length",))
 
 
-SEEDS = range(20)
-
-
-@pytest.mark.parametrize("seed", SEEDS)
+@pytest.mark.parametrize("seed", seeds(200))
 def test_overlaps_of_random_strips_are_those_of_their_triangles(seed: int) -> None:
     triangulation = curling(seed)
     flat = unroll(triangulation)
@@ -46,14 +44,8 @@ def test_overlaps_of_random_strips_are_those_of_their_triangles(seed: int) -> No
     assert flat.overlaps == (covered_twice(corners) > 1e-8 * triangulation.area)
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("seed", range(20, 200))
-def test_overlaps_of_more_random_strips_are_those_of_their_triangles(seed: int) -> None:
-    test_overlaps_of_random_strips_are_those_of_their_triangles(seed)
-
-
 def test_both_answers_are_frequent_among_random_strips() -> None:
-    count = sum(unroll(curling(seed)).overlaps for seed in SEEDS)
+    count = sum(unroll(curling(seed)).overlaps for seed in range(20))
     assert 3 <= count <= 17
 
 

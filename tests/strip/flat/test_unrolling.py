@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from scipy.integrate import quad
 from scipy.interpolate import BSpline
 
+from tests.seeds import seeds
 from wrinkle_cad.errors import InputError
 from wrinkle_cad.strip.curve.sampling import Samples, sample_curve
 from wrinkle_cad.strip.flat.unrolling import Unrolling, unroll, unroll_cones
@@ -417,7 +418,7 @@ def test_rails_that_touch_on_the_way_and_points_that_repeat_keep_every_length() 
         assert not flat.overlaps
 
 
-@pytest.mark.parametrize("seed", range(40))
+@pytest.mark.parametrize("seed", seeds(40))
 def test_random_strips_keep_every_length(seed: int) -> None:
     generator = np.random.default_rng(seed)
     m, n = generator.integers(2, 9, 2)

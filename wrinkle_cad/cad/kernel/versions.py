@@ -7,7 +7,10 @@ takes them from here, under names that say what they hold. Casts need nothing he
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from typing import TypeAlias
+
+from OCP.TopoDS import TopoDS_Shape
 
 try:  # OCP 7.9
     from OCP.TColgp import TColgp_Array1OfPnt, TColgp_Array1OfPnt2d, TColgp_Array2OfPnt
@@ -36,3 +39,11 @@ PointGrid: TypeAlias = TColgp_Array2OfPnt
 ShapeList: TypeAlias = TopTools_ListOfShape
 ShapeMap: TypeAlias = TopTools_IndexedMapOfShape
 LabelList: TypeAlias = TDF_LabelSequence
+
+
+def shape_list(shapes: Iterable[TopoDS_Shape]) -> ShapeList:
+    """Returns the shapes as the list that the kernel's algorithms take."""
+    listed = ShapeList()
+    for shape in shapes:
+        listed.Append(shape)
+    return listed

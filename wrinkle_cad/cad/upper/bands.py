@@ -116,7 +116,7 @@ def make_band(
     """
     name = "PQ"[i]
     side = side_curve(opening.q_edges if i else opening.p_edges, f"opening along {name}")
-    width = float(_distances(samples.points, side).max())
+    width = float(distances_from(samples.points, side).max())
     if width <= settings.SEWN_DIRECTLY:
         return None
     _check_open(profile, side, width, name)
@@ -135,7 +135,7 @@ def make_band(
     return Band(name, *rails, *sampled, triangulation, shell, width)
 
 
-def _distances(points: Floats, side: Directrix) -> Floats:
+def distances_from(points: Floats, side: Directrix) -> Floats:
     """Returns (k,) mm: how far points are from a curve, exact to far below the band's width."""
     parameters = np.union1d(np.linspace(*side.interval, settings.BAND_LINE), side.breaks)
     line = side.point_at(parameters)
@@ -157,7 +157,7 @@ def _check_open(profile: Directrix, side: Directrix, width: float, name: str) ->
     Near an end it narrows steadily; anywhere else the width has a minimum of its own.
     """
     parameters = np.linspace(*profile.interval, settings.BAND_CHECKS)
-    gaps = _distances(profile.point_at(parameters), side)
+    gaps = distances_from(profile.point_at(parameters), side)
     inner = gaps[1:-1]
     is_least = (inner <= gaps[:-2]) & (inner <= gaps[2:])
     narrow = is_least & (inner < settings.BAND_NARROWEST * width)

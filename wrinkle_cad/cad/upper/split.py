@@ -28,7 +28,7 @@ from wrinkle_cad.cad.kernel.shape_index import ShapeIndex
 from wrinkle_cad.cad.kernel.splines import make_surface
 from wrinkle_cad.cad.kernel.steps import kernel_step
 from wrinkle_cad.cad.kernel.topology import as_edge, as_face
-from wrinkle_cad.cad.kernel.versions import ShapeList
+from wrinkle_cad.cad.kernel.versions import shape_list
 from wrinkle_cad.errors import CadError
 from wrinkle_cad.strip.curve.cubic import cubic_through
 from wrinkle_cad.strip.curve.nearest import nearest_on_polyline
@@ -93,8 +93,8 @@ def split_faces(
             _ribbon(side, height, over) for side, over in zip(sides, overrun, strict=True)
         ]
         splitter = BRepAlgoAPI_Splitter()
-        splitter.SetArguments(_listed([upper]))
-        splitter.SetTools(_listed(tools))
+        splitter.SetArguments(shape_list([upper]))
+        splitter.SetTools(shape_list(tools))
         splitter.SetNonDestructive(True)
         splitter.SetRunParallel(False)
         splitter.Build()
@@ -116,13 +116,6 @@ def _drawn(
     if len(owners) > 1 or any(max(over) > 0.0 for over in overrun):
         return None
     return drawn_edges(faces[int(owners[0])], sides)
-
-
-def _listed(shapes: Sequence[TopoDS_Shape]) -> ShapeList:
-    listed = ShapeList()
-    for shape in shapes:
-        listed.Append(shape)
-    return listed
 
 
 def _pieces_of(splitter: BRepAlgoAPI_Splitter, face: TopoDS_Face) -> tuple[TopoDS_Face, ...]:
