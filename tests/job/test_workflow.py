@@ -251,7 +251,7 @@ def test_a_materials_thickness_reaches_the_pattern(tmp_path: Path) -> None:
         Job(
             input=EXAMPLE,
             output_dir=tmp_path / "out",
-            material=material,
+            material=str(material),
             surface_side="inside",
         )
     )

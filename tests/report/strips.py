@@ -9,16 +9,21 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from wrinkle_cad.files.json_values import finite
 from wrinkle_cad.pattern.piece.making import make_pieces
 from wrinkle_cad.pattern.piece.options import NotchRule, PieceSettings
-from wrinkle_cad.report.material import Limits
+from wrinkle_cad.report.limits import Limits
 from wrinkle_cad.report.verdict import judge
 from wrinkle_cad.report.views import MeshView, StripView
-from wrinkle_cad.strip.bend_radius import smallest_bend_radius
 from wrinkle_cad.strip.convexity import validity_matrix
+from wrinkle_cad.strip.curve.polyline import arc_lengths
 from wrinkle_cad.strip.flat.unrolling import unroll
-from wrinkle_cad.strip.gaps import find_gaps, gap_entry
+from wrinkle_cad.strip.gaps import find_gaps
+from wrinkle_cad.strip.rulings.surface import rule_strip
+from wrinkle_cad.strip.rulings.through_points import rail_through
 from wrinkle_cad.strip.triangulation import triangulate
+from wrinkle_cad.wrinkle.grain import radii_by_grain
+from wrinkle_cad.wrinkle.strip_report import report_on
 
 Rail = NDArray[np.float64]
 
@@ -85,34 +90,25 @@ def view_of(
 def entry_of(view: StripView) -> dict[str, Any]:
     """A view's entry in the ``strips`` of the JSON."""
     strip, flat = view.triangulation, view.unrolling
-    defects = [gap for gap in view.gaps if gap.kind != "inflection"]
-    chords = [
-        float(np.linalg.norm(np.diff(rail, axis=0), axis=1).sum()) for rail in (strip.p, strip.q)
-    ]
     assert view.least_bending is not None
-    return {
-        "name": view.name,
-        "samples_p": len(strip.p),
-        "samples_q": len(strip.q),
-        "interior_bridges": strip.interior_count,
-        "invalid_bridges": strip.invalid_count,
-        "inflection_bridges": strip.inflection_count,
-        "invalid_length_p_mm": sum(gap.p_length for gap in defects),
-        "invalid_length_q_mm": sum(gap.q_length for gap in defects),
-        "bending": strip.bending,
-        "least_bending": view.least_bending.bending,
-        "area_3d_mm2": strip.area,
-        "area_pattern_mm2": flat.area,
-        "max_fold_deg": math.degrees(float(np.abs(strip.fold).max(initial=0.0))),
-        "max_twist_deg": math.degrees(float(np.abs(strip.twist).max(initial=0.0))),
-        "smallest_bend_radius_mm": smallest_bend_radius(strip),
-        "seam_lengths_mm": {
-            "p": {"space": chords[0], "pattern": flat.p_length},
-            "q": {"space": chords[1], "pattern": flat.q_length},
-        },
-        "overlaps": flat.overlaps,
-        "gaps": [gap_entry(gap) for gap in view.gaps],
-    }
+    p, q = rail_through(strip.p), rail_through(strip.q)
+    places = [arc_lengths(rail) for rail in (strip.p, strip.q)]
+    i, j = strip.bridges.T
+    ruled = rule_strip(p, q, (places[0][i], places[1][j]))
+    report = report_on(
+        view.name,
+        strip,
+        flat,
+        ruled,
+        role=view.role,
+        area_mm2=strip.area,
+        face_count=len(strip.triangles),
+        lengths_mm=(float(places[0][-1]), float(places[1][-1])),
+        least_bending=view.least_bending.bending,
+        gaps=view.gaps,
+        grain_radii_mm=radii_by_grain(strip, flat, ruled, "along"),
+    )
+    return dict(finite({**report.as_json(), "passed": None}))
 
 
 def summary_of(

@@ -22,7 +22,8 @@ from tests.report.strips import (
     wavy_rails,
 )
 from wrinkle_cad.errors import InputError
-from wrinkle_cad.report.material import Limits
+from wrinkle_cad.report.limits import Limits
+from wrinkle_cad.report.material import Material
 from wrinkle_cad.report.numbers import Numbers, written
 from wrinkle_cad.report.page import write_page
 from wrinkle_cad.report.views import MeshView, StripView
@@ -126,7 +127,7 @@ def test_the_verdict_stands_at_the_top_with_the_missed_limit(
     verdict = summary["verdict"]
     assert verdict["headline"] in texts[:8]
     assert "FAIL" in texts
-    assert verdict["missed"][0] in texts
+    assert verdict["reasons"][0] in texts
 
 
 def test_without_limits_nothing_is_passed_or_refused(good_view: StripView) -> None:
@@ -153,7 +154,7 @@ def test_text_from_the_file_stays_text(good_view: StripView) -> None:
     finding = {"code": HOSTILE, "severity": "warning", "message": HOSTILE}
     summary = summary_of(
         [hostile, hostile],
-        Limits(material=HOSTILE, max_fold_deg=0.1),
+        Limits(max_fold_deg=0.1).of(Material(name=HOSTILE)),
         input={"file": HOSTILE, "unit": HOSTILE},
         findings=[finding],
         settings={"name": HOSTILE, HOSTILE: 1.0},
@@ -285,6 +286,6 @@ def test_of_several_strips_the_worst_gives_the_key_figures(
 ) -> None:
     views = [good_view, bad_view]
     html = write_page(summary_of(views), views)
-    assert "Worst strip: vamp wrinkle" in [part.text for part in PageReader(html).all("h2")]
+    assert "Worst wrinkle: vamp wrinkle" in [part.text for part in PageReader(html).all("h2")]
     tiles = [path for path, *_ in shown_numbers(html)][:4]
-    assert tiles[0] == "/strips/1/invalid_bridges"
+    assert tiles[0] == "/strips/1/max_strain_percent"

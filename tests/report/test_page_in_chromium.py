@@ -20,7 +20,7 @@ from selenium.webdriver.common.by import By
 from selenium.webdriver.remote.webelement import WebElement
 
 from tests.report.strips import cylinder_rails, dome, planar_rails, summary_of, view_of, wavy_rails
-from wrinkle_cad.report.material import Limits
+from wrinkle_cad.report.limits import Limits
 from wrinkle_cad.report.page import write_page
 from wrinkle_cad.report.views import StripView
 

@@ -6,13 +6,27 @@ from typing import Any
 
 import pytest
 
-from wrinkle_cad.report.material import Limits
-from wrinkle_cad.report.verdict import check_limits, invalid_percent, judge
+from wrinkle_cad.report.limits import Limits
+from wrinkle_cad.report.material import Material
+from wrinkle_cad.report.verdict import invalid_percent, judge
+
+CALF = Material(
+    name="calf leather, 1.2 mm",
+    thickness_mm=1.2,
+    smallest_bend_radius_mm=2.0,
+    largest_strain_percent=2.0,
+    largest_twist_deg=4.0,
+)
 
 
 def entry(**changes: Any) -> dict[str, Any]:
     return {
         "name": "wrinkle",
+        "state": "developable",
+        "developable_share": 1.0,
+        "max_strain_percent": 0.0,
+        "stretched_mm": 0.0,
+        "creases": [],
         "interior_bridges": 225,
         "invalid_bridges": 0,
         "inflection_bridges": 0,
@@ -20,7 +34,9 @@ def entry(**changes: Any) -> dict[str, Any]:
         "invalid_length_q_mm": 0.0,
         "max_fold_deg": 2.4,
         "max_twist_deg": 0.0,
-        "smallest_bend_radius_mm": 3.0,
+        "inner_bend_radius_mm": 3.0,
+        "bend_radius_along_grain_mm": 3.0,
+        "bend_radius_across_grain_mm": 30.0,
         "bending": 6.0,
         "least_bending": 1.5,
         "seam_lengths_mm": {
@@ -28,73 +44,181 @@ def entry(**changes: Any) -> dict[str, Any]:
             "q": {"space": 150.0, "pattern": 150.0},
         },
         "overlaps": False,
-        "gaps": [],
     } | changes
 
 
-def bad_entry(**changes: Any) -> dict[str, Any]:
+def stretched(**changes: Any) -> dict[str, Any]:
     given: dict[str, Any] = {
+        "state": "stretched",
+        "developable_share": 0.62,
+        "max_strain_percent": 0.52,
+        "stretched_mm": 41.0,
+        "max_twist_deg": 11.7,
         "invalid_bridges": 80,
         "inflection_bridges": 4,
         "invalid_length_p_mm": 10.0,
         "invalid_length_q_mm": 15.0,
         "max_fold_deg": 31.25,
-        "max_twist_deg": 12.0,
     }
     return entry(**(given | changes))
 
 
-def test_a_developable_strip_is_called_so() -> None:
-    verdict = judge([entry()], Limits())
-    assert verdict.state == "developable"
-    assert verdict.headline == (
-        "Developable: all 225 bridges; largest fold 2.40°, largest twist 0°."
-    )
+def creased(**changes: Any) -> dict[str, Any]:
+    crease = {"angle_deg": 45.0, "p_mm": 40.0, "q_mm": 40.0, "cause": "corner"}
+    given = {"state": "creased", "creases": [crease], "inner_bend_radius_mm": 0.0}
+    return entry(**(given | changes))
+
+
+@pytest.mark.parametrize(
+    ("given", "headline"),
+    [
+        (
+            entry(),
+            "Developable: strain at most 0%. 100% of the rails developable, smallest bend radius"
+            " 3.00 mm, largest twist 0°.",
+        ),
+        (
+            stretched(),
+            "Stretched: by at most 0.520%, over 41.0 mm. 62.0% of the rails developable, smallest"
+            " bend radius 3.00 mm, largest twist 11.7°.",
+        ),
+        (
+            creased(),
+            "Creased: by 45.0° at 40.0 mm of P. 100% of the rails developable, smallest bend"
+            " radius 0 mm, largest twist 0°.",
+        ),
+        (
+            entry(state="folded", inner_bend_radius_mm=None),
+            "Folded: the strip lies back on itself or passes through itself. 100% of the rails"
+            " developable, flat, largest twist 0°.",
+        ),
+    ],
+)
+def test_each_state_is_said_with_all_figures(given: dict[str, Any], headline: str) -> None:
+    verdict = judge([given], Limits())
+    assert verdict.state == given["state"]
+    assert verdict.headline == headline
     assert verdict.passed is None
     assert verdict.limits == ()
 
 
-@pytest.mark.parametrize(
-    ("runs", "words"), [(1, "1 inflection ruling ("), (2, "2 inflection rulings (")]
-)
-def test_inflection_rulings_are_counted_by_runs_of_bridges(runs: int, words: str) -> None:
-    gaps = [{"kind": "inflection"}] * runs
-    verdict = judge([entry(invalid_bridges=5, inflection_bridges=5, gaps=gaps)], Limits())
-    assert verdict.state == "inflection"
-    assert verdict.headline.startswith(f"Developable but for {words}5 of 225 bridges)")
-
-
-def test_a_strip_that_is_not_developable_says_how_much() -> None:
-    verdict = judge([bad_entry()], Limits())
-    assert verdict.state == "not-developable"
-    assert verdict.headline == (
-        "Not developable: 76 of 225 bridges (and 4 at inflection rulings), covering 25.0 mm of"
-        " rail; largest fold 31.2°, largest twist 12.0°."
-    )
+def test_of_several_creases_the_sharpest_is_named() -> None:
+    creases = [{"angle_deg": angle, "p_mm": 10 * angle, "q_mm": 0.0} for angle in (6, 30, 9)]
+    headline = judge([creased(creases=creases)], Limits()).headline
+    assert headline.startswith("Creased: by 30.0° at 300 mm of P and at 2 more places.")
 
 
 def test_the_worst_strip_decides_for_the_job() -> None:
-    inflected = entry(invalid_bridges=1, inflection_bridges=1, gaps=[{"kind": "inflection"}])
-    assert judge([entry(), inflected], Limits()).state == "inflection"
-    verdict = judge([entry(), inflected, bad_entry()], Limits())
-    assert verdict.state == "not-developable"
-    assert verdict.headline == "Not developable: 1 of 3 strips."
-    assert judge([entry(), inflected], Limits()).headline == (
-        "Developable but for inflection rulings: both strips."
+    verdict = judge([entry(), stretched(), creased()], Limits())
+    assert verdict.state == "creased"
+    assert verdict.headline == (
+        "1 of 3 strips creased, 1 of 3 strips stretched, 1 of 3 strips developable."
     )
-    assert [strip.state for strip in verdict.strips] == [
-        "developable",
-        "inflection",
-        "not-developable",
-    ]
+    assert judge([entry(), entry()], Limits()).headline == "Developable: both strips."
+    assert judge([entry()] * 3, Limits()).headline == "Developable: all 3 strips."
+
+
+def test_bands_are_judged_apart_from_the_wrinkles() -> None:
+    bands = [creased(role="band", name="a"), entry(role="band", name="b")]
+    verdict = judge([entry(), *bands], Limits().of(CALF))
+    assert verdict.state == "developable"
+    assert verdict.passed is True
+    assert verdict.reasons == ()
+    assert verdict.bands == "Bands: 1 of 2 bands creased, 1 of 2 bands developable."
+    (missed,) = verdict.strips[1].missed
+    assert "change --margin, --height, --fade or --phase" in missed
+    assert [strip.passed for strip in verdict.strips] == [True, False, True]
+
+
+def test_with_limits_the_verdict_is_pass_or_fail_in_words() -> None:
+    kept = stretched(max_strain_percent=0.14, max_twist_deg=3.0)
+    assert judge([kept], Limits().of(CALF)).headline == (
+        "PASS for calf leather, 1.2 mm: gives 2%, needs 0.140%; bends to 2 mm, needs 3.00 mm."
+    )
+    failed = judge([creased()], Limits().of(CALF))
+    assert failed.passed is False
+    assert failed.headline == (
+        "FAIL for calf leather, 1.2 mm: wrinkle has a bend radius of 0 mm, and 2 is the least."
+        " Make the rails' waves lower or longer."
+    )
+
+
+@pytest.mark.parametrize(
+    ("limits", "found"),
+    [
+        (Limits(max_strain_percent=0.5), "a strain of 0.520%, and 0.5 is allowed"),
+        (Limits(max_twist_deg=5.0), "a twist of 11.7°, and 5 is allowed"),
+        (Limits(max_fold_deg=10.0), "a fold of 31.2°, and 10 is allowed"),
+        (
+            Limits(max_invalid_percent=0.0),
+            "invalid bridges on 10.0% of its rails, and 0 is allowed",
+        ),
+        (Limits(min_radius_mm=3.5), "a bend radius of 3.00 mm, and 3.5 is the least"),
+    ],
+)
+def test_each_limit_is_missed_on_its_own(limits: Limits, found: str) -> None:
+    verdict = judge([stretched()], limits)
+    (reason,) = verdict.reasons
+    assert reason.startswith(f"wrinkle has {found}. ")
+    assert verdict.passed is False
+
+
+def test_a_crease_limit_is_held_against_the_sharpest_crease() -> None:
+    assert judge([creased()], Limits(max_crease_deg=44.9)).passed is False
+    assert judge([creased()], Limits(max_crease_deg=45.0)).passed is True
+    assert judge([entry()], Limits(max_crease_deg=0.0)).passed is True
+
+
+@pytest.mark.parametrize(
+    "limits",
+    [
+        Limits(max_strain_percent=0.52),
+        Limits(max_fold_deg=31.25),
+        Limits(max_twist_deg=11.7),
+        Limits(max_invalid_percent=10.0),
+        Limits(min_radius_mm=3.0),
+    ],
+)
+def test_a_limit_that_is_just_reached_is_kept(limits: Limits) -> None:
+    verdict = judge([stretched()], limits)
+    assert verdict.passed is True
+    assert verdict.reasons == ()
+    assert len(verdict.limits) == 1
+
+
+def test_a_flat_strip_keeps_every_bend_radius() -> None:
+    assert judge([entry(inner_bend_radius_mm=None)], Limits(min_radius_mm=1e6)).passed is True
+
+
+def test_bends_are_held_against_the_limit_of_their_direction_in_the_grain() -> None:
+    board = Material(
+        name="board",
+        smallest_bend_radius_mm=5.0,
+        smallest_bend_radius_across_grain_mm=2.0,
+    )
+    limits = Limits().of(board)
+    along = entry(bend_radius_along_grain_mm=3.0, bend_radius_across_grain_mm=30.0)
+    across = entry(bend_radius_along_grain_mm=30.0, bend_radius_across_grain_mm=3.0)
+    assert judge([along], limits).passed is False
+    assert judge([across], limits).passed is True
+
+
+def test_the_missed_limits_of_all_strips_are_listed() -> None:
+    verdict = judge([stretched(name="a"), entry(), stretched(name="b")], Limits(max_fold_deg=5))
+    assert [line.split(" has ")[0] for line in verdict.reasons] == ["a", "b"]
+    assert verdict.headline.endswith(" And 1 more.")
 
 
 def test_derived_figures_follow_from_the_entry() -> None:
-    (strip,) = judge([bad_entry()], Limits()).strips
+    (strip,) = judge([stretched()], Limits()).strips
     assert strip.price_of_developability == 4.0
     assert strip.invalid_percent == 10.0
     assert strip.seam_difference_p_mm == 0.5
     assert strip.seam_difference_q_mm == 0.0
+
+
+def test_inflections_do_not_count_as_invalid_rail() -> None:
+    assert invalid_percent(entry(invalid_bridges=9, inflection_bridges=9)) == 0.0
 
 
 def test_an_overlapping_pattern_is_mentioned() -> None:
@@ -102,78 +226,7 @@ def test_an_overlapping_pattern_is_mentioned() -> None:
     assert "cover itself" not in judge([entry()], Limits()).meaning
 
 
-@pytest.mark.parametrize(
-    ("limits", "line"),
-    [
-        (Limits(max_fold_deg=10.0), "wrinkle - largest fold 31.2 degrees - at most 10 - "),
-        (Limits(max_twist_deg=5.0), "wrinkle - largest twist 12.0 degrees - at most 5 - "),
-        (
-            Limits(max_invalid_percent=0.0),
-            "wrinkle - rail covered by invalid bridges 10.0 per cent - at most 0 - ",
-        ),
-        (
-            Limits(smallest_bend_radius_mm=3.5),
-            "wrinkle - smallest bend radius 3.00 mm - at least 3.5 - ",
-        ),
-    ],
-)
-def test_each_limit_is_missed_on_its_own(limits: Limits, line: str) -> None:
-    (missed,) = check_limits(bad_entry(), limits)
-    assert missed.startswith(line)
-    assert judge([bad_entry()], limits).passed is False
-
-
-@pytest.mark.parametrize(
-    "limits",
-    [
-        Limits(max_fold_deg=31.25),
-        Limits(max_twist_deg=12.0),
-        Limits(max_invalid_percent=10.0),
-        Limits(smallest_bend_radius_mm=3.0),
-    ],
-)
-def test_a_limit_that_is_just_reached_is_kept(limits: Limits) -> None:
-    verdict = judge([bad_entry()], limits)
-    assert verdict.passed is True
-    assert verdict.missed == ()
-    assert len(verdict.limits) == 1
-
-
-def test_a_flat_strip_keeps_every_bend_radius() -> None:
-    limits = Limits(smallest_bend_radius_mm=1e6)
-    assert check_limits(entry(smallest_bend_radius_mm=None), limits) == ()
-
-
-def test_the_missed_limits_of_all_strips_are_listed() -> None:
-    verdict = judge([bad_entry(name="a"), entry(), bad_entry(name="b")], Limits(max_fold_deg=5))
-    assert [line.split(" - ")[0] for line in verdict.missed] == ["a", "b"]
-
-
-def test_inflections_do_not_count_as_invalid_rail() -> None:
-    inflected = entry(invalid_bridges=9, inflection_bridges=9, gaps=[{"kind": "inflection"}])
-    assert invalid_percent(inflected) == 0.0
-    assert judge([inflected], Limits(max_invalid_percent=0.0)).passed is True
-
-
 def test_the_verdict_is_plain_in_the_json() -> None:
-    said = judge([bad_entry()], Limits(max_fold_deg=1.0)).as_json()
+    said = judge([stretched()], Limits(max_fold_deg=1.0)).as_json()
     assert said["passed"] is False
     assert said["strips"][0]["name"] == "wrinkle"
-
-
-def test_strips_and_bands_are_counted_apart() -> None:
-    inflected = entry(invalid_bridges=1, inflection_bridges=1, gaps=[{"kind": "inflection"}])
-    bands = [bad_entry(role="band"), bad_entry(role="band"), entry(role="band")]
-    strips = [entry(role="strip"), inflected | {"role": "strip"}]
-    assert judge([*strips, *bands], Limits()).headline == (
-        "Not developable: 2 of 3 bands. Both strips are developable but for inflection rulings."
-    )
-    assert judge([bad_entry(), entry(), bands[0]], Limits()).headline == (
-        "Not developable: 1 of 2 strips and the band."
-    )
-    assert judge([entry(), bands[0], bands[1]], Limits()).headline == (
-        "Not developable: both bands. The strip is developable."
-    )
-    assert judge([entry(), entry(role="band")], Limits()).headline == (
-        "Developable: the strip and the band."
-    )

@@ -204,7 +204,7 @@ def done_text(event: FileFinished) -> str:
     text = f"done in {total_seconds(event.record):.2f} s"
     developability = event.record.figures.get("developability")
     if developability is not None:
-        text += f", {developability:.1f}% of the bridges developable"
+        text += f", {developability:.1f}% of the rails developable"
     if event.record.missed_limits:
         text += f", FAIL: {'; '.join(event.record.missed_limits)}"
     return text

@@ -75,6 +75,7 @@ def _parser() -> argparse.ArgumentParser:
     _add_inspect(commands)
     _add_compare(commands)
     _add_check(commands)
+    _add_materials(commands)
     _add_doctor(commands)
     return parser
 
@@ -129,6 +130,13 @@ def _add_check(commands: Any) -> None:
     _add_debug(check)
 
 
+def _add_materials(commands: Any) -> None:
+    materials = commands.add_parser("materials", help="list the materials that --material knows")
+    materials.set_defaults(command=_materials)
+    materials.add_argument("--json", action="store_true", help="print one JSON value")
+    _add_debug(materials)
+
+
 def _add_doctor(commands: Any) -> None:
     doctor = commands.add_parser("doctor", help="say what is wrong with this installation")
     doctor.set_defaults(command=_doctor)
@@ -176,18 +184,18 @@ def job_misses_limits(outcome: JobDone) -> bool:
 def _print_done(outcome: JobDone) -> None:
     from .screen import one_line
 
-    for strip in outcome.summary["strips"]:
-        print(
-            f"{one_line(strip['name'])}: {strip['interior_bridges']} bridges, "
-            f"{strip['invalid_bridges']} not locally convex "
-            f"({strip['inflection_bridges']} of them inflections), "
-            f"largest fold {strip['max_fold_deg']:.2f} deg, "
-            f"area {strip['area_3d_mm2']:.1f} mm2, flat {strip['area_pattern_mm2']:.1f} mm2"
-        )
+    verdict = outcome.summary["verdict"]
+    for strip in verdict["strips"]:
+        if strip["role"] != "band":
+            print(f"{one_line(strip['name'])}: {one_line(strip['sentence'])}")
+    if verdict["bands"]:
+        print(one_line(verdict["bands"]))
     for finding in outcome.findings:
         print(f"{finding.severity}: {one_line(finding.message)}")
     for line in outcome.missed_limits:
         print(f"FAIL: {one_line(line)}")
+    if verdict["passed"]:
+        print(one_line(verdict["headline"]))
     for path in outcome.outputs:
         print(path)
 
@@ -242,6 +250,21 @@ def _check(given: argparse.Namespace) -> int:
         print(f"{finding.severity}: {finding.code}: {one_line(finding.message)}")
     print("nothing wrong" if report.is_clean else "not fit to be cut as it is")
     return DONE if report.is_clean else FAILED
+
+
+def _materials(given: argparse.Namespace) -> int:
+    from wrinkle_cad.report.material import packaged_materials
+
+    from .screen import material_lines
+
+    if given.json:
+        known = [asdict(material) for material in packaged_materials()]
+        print(json.dumps(known, ensure_ascii=False, indent=2))
+        return DONE
+    for material in packaged_materials():
+        for line in material_lines(material):
+            print(line)
+    return DONE
 
 
 def _doctor(_: argparse.Namespace) -> int:

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from wrinkle_cad.job.inspection import Inspection
     from wrinkle_cad.job.outcome import Progress
+    from wrinkle_cad.report.material import Material
 
 
 def one_line(text: str) -> str:
@@ -93,3 +94,24 @@ def print_comparison(summary: Mapping[str, Any]) -> None:
                 f"{row['seconds']:.4f}",
             )
         console.print(table)
+
+
+def material_lines(material: Material) -> Iterator[str]:
+    """A material as lines: its name, what is known of it, and where that comes from."""
+    yield material.name
+    radius, across = (
+        material.smallest_bend_radius_mm,
+        material.smallest_bend_radius_across_grain_mm,
+    )
+    along = "" if across is None else " along the grain"
+    facts = (
+        ("{:g} mm thick", material.thickness_mm),
+        ("bends to {:g} mm" + along, radius),
+        ("bends to {:g} mm across the grain", across),
+        ("gives {:g}%", material.largest_strain_percent),
+        ("twists by {:g} deg", material.largest_twist_deg),
+        ("K-factor {:g}", material.k_factor),
+    )
+    known = [words.format(fact) for words, fact in facts if fact is not None]
+    yield f"    {', '.join(known)}"
+    yield f"    {material.source}"

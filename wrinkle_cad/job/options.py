@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from pathlib import Path
 from typing import ClassVar
 
 from wrinkle_cad import settings
 from wrinkle_cad.options.option import option
-from wrinkle_cad.report.material import LimitSettings
+from wrinkle_cad.report.limits import LimitSettings
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -69,9 +68,13 @@ class FileSettings:
 class JudgingSettings(LimitSettings):
     """What the strips are judged by, and what comes of it."""
 
-    material: Path | None = field(
+    material: str | None = field(
         default=None,
-        metadata=option("a material's limits and thickness", metavar="FILE.toml"),
+        metadata=option(
+            "its limits, thickness and K-factor; see wrinkle-cad materials",
+            may_be_file=True,
+            metavar="NAME|FILE.toml",
+        ),
     )
     strict: bool = field(
         default=False, metadata=option("a missed limit is a failure (exit code 1)")

@@ -6,14 +6,15 @@ from collections.abc import Mapping
 from dataclasses import asdict
 from datetime import datetime
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from wrinkle_cad import settings
 from wrinkle_cad.cad.kernel.loading import kernel_importable
 from wrinkle_cad.errors import Finding
 from wrinkle_cad.options.option import values_of
 from wrinkle_cad.pattern.piece.options import PieceOptions, PieceSettings
-from wrinkle_cad.report.material import Limits, LimitSettings, read_material
+from wrinkle_cad.report.limits import Limits, LimitSettings
+from wrinkle_cad.report.material import find_material
 from wrinkle_cad.wrinkle.options import StripSettings
 
 from .job import Job
@@ -68,7 +69,24 @@ def strip_of(job: Job, p: object, q: object, name: str) -> WrinkleStrip:
     from wrinkle_cad.wrinkle.wrinkle_strip import WrinkleStrip
 
     own_name = job.name if name == settings.STRIP_NAME else name
-    return WrinkleStrip(p, q, name=own_name, **values_of(job, StripSettings))
+    return WrinkleStrip(
+        p, q, name=own_name, **values_of(job, StripSettings), **material_of(job, limits_of(job))
+    )
+
+
+def material_of(job: Job, limits: Limits) -> dict[str, Any]:
+    """Returns what a strip is told of its material: thickness, K-factor and grain.
+
+    Args:
+        job: the settings.
+        limits: with the material.
+    """
+    k_factor = limits.k_factor if job.k_factor is None else job.k_factor
+    return {
+        "thickness": limits.thickness_mm if job.thickness is None else job.thickness,
+        "k_factor": settings.K_FACTOR if k_factor is None else k_factor,
+        "grain": job.grain,
+    }
 
 
 def limits_of(job: Job) -> Limits:
@@ -78,7 +96,7 @@ def limits_of(job: Job) -> Limits:
         InputError: the material's file cannot be used.
     """
     limits = Limits(**values_of(job, LimitSettings))
-    return limits if job.material is None else read_material(job.material, limits)
+    return limits if job.material is None else limits.of(find_material(job.material))
 
 
 def piece_settings_of(job: Job, limits: Limits) -> PieceSettings:

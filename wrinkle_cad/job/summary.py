@@ -18,7 +18,7 @@ from .versions import installed_versions
 if TYPE_CHECKING:
     from wrinkle_cad.cad.exchange.choose import Chosen
     from wrinkle_cad.cad.exchange.shapes import CadFile
-    from wrinkle_cad.report.material import Limits
+    from wrinkle_cad.report.limits import Limits
     from wrinkle_cad.wrinkle.strip_report import StripReport
 
 
@@ -43,6 +43,9 @@ def summary_of(
     from wrinkle_cad.report.verdict import judge
 
     entries = [report.as_json() for report in reports]
+    verdict = judge(entries, limits)
+    for entry, said in zip(entries, verdict.strips, strict=True):
+        entry["passed"] = said.passed
     return {
         "schema": SCHEMA,
         "schema_version": SCHEMA_VERSION,
@@ -55,7 +58,7 @@ def summary_of(
         "settings": settings_as_json(job),
         "versions": installed_versions(),
         "strips": entries,
-        "verdict": judge(entries, limits).as_json(),
+        "verdict": verdict.as_json(),
         "findings": [asdict(finding) for finding in findings],
     }
 

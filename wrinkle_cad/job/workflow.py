@@ -73,7 +73,7 @@ def _run(job: Job, clock: PhaseClock) -> JobDone:
     return JobDone(
         job=job,
         outputs=outputs,
-        missed_limits=tuple(summary["verdict"]["missed"]),
+        missed_limits=tuple(summary["verdict"]["reasons"]),
         summary=summary,
         findings=tuple(Finding(**entry) for entry in summary["findings"]),
         seconds=clock.seconds,

@@ -14,7 +14,7 @@ from wrinkle_cad.wrinkle.triangulated_strip import TriangulatedStrip
 from wrinkle_cad.wrinkle.wrinkle_strip import WrinkleStrip
 
 from .job import Job
-from .parts import strip_of
+from .parts import limits_of, material_of, strip_of
 
 if TYPE_CHECKING:
     from wrinkle_cad.cad.exchange.choose import Chosen, StripInput
@@ -159,6 +159,7 @@ def _profiles(job: Job, opening: Opening, given: StripInput) -> tuple[object, ob
 
 
 def _bands(job: Job, stitched: Stitched) -> tuple[TriangulatedStrip, ...]:
+    material = material_of(job, limits_of(job))
     return tuple(
         TriangulatedStrip(
             band.p,
@@ -170,6 +171,7 @@ def _bands(job: Job, stitched: Stitched) -> tuple[TriangulatedStrip, ...]:
             name=band.name,
             role="band",
             color=settings.BAND_COLOR,
+            **material,
         )
         for band in stitched.report.bands
     )

@@ -16,7 +16,7 @@ from .parts import write_pattern
 
 if TYPE_CHECKING:
     from wrinkle_cad.cad.exchange.shapes import Part
-    from wrinkle_cad.report.material import Limits
+    from wrinkle_cad.report.limits import Limits
     from wrinkle_cad.report.views import MeshView
     from wrinkle_cad.wrinkle.cut_pattern import Pattern
 

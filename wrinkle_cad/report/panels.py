@@ -2,16 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from typing import Final
+from collections.abc import Mapping, Sequence
+from typing import Any, Final
 
 from wrinkle_cad import settings
 
-from .markup import Element, append, node
+from .markup import Element, node
 from .numbers import TIMES, Numbers
 from .views import MeshView, StripView
 
 _IDLE: Final = "Point at the strip: the same bridge lights up in every view."
+_STATES: Final = ("developable", "stretched", "creased", "folded")
 _COLORS: Final = (("validity", "Validity"), ("fold", "Fold angle"), ("twist", "Twist"))
 _PATTERN_LAYERS: Final = (
     ("cut", "Cut line"),
@@ -25,19 +26,16 @@ _PATTERN_LAYERS: Final = (
 
 
 def figures_panel(numbers: Numbers) -> Element:
-    """The key figures of the strip with the largest share of invalid rail, as tiles."""
+    """The key figures of the wrinkle that asks most of a sheet, as tiles."""
     worst = _worst_strip(numbers)
     entry, said = f"/strips/{worst}", f"/verdict/strips/{worst}"
-    of = node("small", " of ", numbers.show(f"{entry}/interior_bridges"))
-    if numbers.get(f"{entry}/inflection_bridges"):
-        append(of, ", ")
-        append(of, numbers.show(f"{entry}/inflection_bridges"))
-        append(of, " at inflections")
+    p95 = node("small", "but for a twentieth of the length at most ", numbers.show(f"{entry}/p95_strain_percent", "%", 3))
     tiles = (
-        ("Invalid bridges", [numbers.show(f"{entry}/invalid_bridges"), of]),
-        ("Rail not developable", [numbers.show(f"{said}/invalid_percent", "%", 1)]),
-        ("Largest fold", [numbers.show(f"{entry}/max_fold_deg", "°", 2)]),
+        ("Strain", [numbers.show(f"{entry}/max_strain_percent", "%", 3), p95]),
+        ("Sharpest crease", _crease(numbers, entry)),
+        ("Smallest bend radius", _radius(numbers, entry)),
         ("Largest twist", [numbers.show(f"{entry}/max_twist_deg", "°", 2)]),
+        ("Developable share of the rails", [numbers.show(f"{entry}/developable_share", "", 3)]),
         ("Area of the pattern", [numbers.show(f"{entry}/area_pattern_mm2", "mm²", 1)]),
         ("Price of developability", [numbers.show(f"{said}/price_of_developability", TIMES, 2)]),
     )
@@ -49,19 +47,44 @@ def figures_panel(numbers: Numbers) -> Element:
         ),
         class_="tiles",
     )
-    if len(numbers.get("/strips")) == 1:
+    if sum(strip.get("role") != "band" for strip in numbers.get("/strips")) <= 1:
         return shown
-    words = f"Worst strip: {numbers.get(f'{entry}/name')}"
+    words = f"Worst wrinkle: {numbers.get(f'{entry}/name')}"
     return node("section", node("h2", words, class_="head"), shown)
 
 
+def _crease(numbers: Numbers, entry: str) -> list[Element | str]:
+    creases = numbers.get(f"{entry}/creases")
+    if not creases:
+        return ["none"]
+    angles = [float(crease["angle_deg"]) for crease in creases]
+    at = angles.index(max(angles))
+    place = node("small", "at ", numbers.show(f"{entry}/creases/{at}/p_mm", "mm", 1), " of P")
+    return [numbers.show(f"{entry}/creases/{at}/angle_deg", "°", 1), place]
+
+
+def _radius(numbers: Numbers, entry: str) -> list[Element | str]:
+    if numbers.get(f"{entry}/smallest_bend_radius_mm") is None:
+        return ["flat"]
+    shown = [numbers.show(f"{entry}/smallest_bend_radius_mm", "mm", 2)]
+    inner = numbers.get(f"{entry}/inner_bend_radius_mm")
+    if inner != numbers.get(f"{entry}/smallest_bend_radius_mm"):
+        inside = numbers.show(f"{entry}/inner_bend_radius_mm", "mm", 2)
+        shown.append(node("small", inside, " inside"))
+    return [*shown]
+
+
 def _worst_strip(numbers: Numbers) -> int:
+    """The wrinkle of the worst state, and among equals of the largest strain."""
     entries = numbers.get("/strips") or [{}]
-    shares = [
-        float(numbers.get(f"/verdict/strips/{at}/invalid_percent") or 0.0)
-        for at in range(len(entries))
-    ]
-    return shares.index(max(shares))
+    leading = [at for at, entry in enumerate(entries) if entry.get("role") != "band"]
+    return max(leading or range(len(entries)), key=lambda at: _badness(entries[at]))
+
+
+def _badness(entry: Mapping[str, Any]) -> tuple[int, float, float]:
+    state = _STATES.index(entry["state"]) if "state" in entry else 0
+    crease = max((float(crease["angle_deg"]) for crease in entry.get("creases", ())), default=0.0)
+    return state, crease, float(entry.get("max_strain_percent") or 0.0)
 
 
 def space_panel(strips: Sequence[StripView], body: MeshView | None) -> Element:

@@ -8,7 +8,14 @@ from typing import Any, Final
 from .markup import Child, Element, node
 from .numbers import TIMES, Numbers
 
-_SIGN: Final = {"developable": "\N{CHECK MARK}", "inflection": "~", "not-developable": "!"}
+_SIGN: Final = {
+    "developable": "\N{CHECK MARK}",
+    "stretched": "~",
+    "creased": "!",
+    "folded": "!",
+    "passed": "\N{CHECK MARK}",
+    "failed": "!",
+}
 _PASSED: Final = {True: ("PASS", "pass"), False: ("FAIL", "fail")}
 _STITCH_ROWS: Final = (
     ("Free edges before", "free_edges_before", ""),
@@ -25,20 +32,29 @@ def verdict_panel(numbers: Numbers) -> Element:
     said: Mapping[str, Any] = numbers.get("/verdict")
     panel = node(
         "section",
-        node("div", _SIGN[said["state"]], class_="sign", aria_hidden="true"),
+        node("div", _SIGN[_tone(said)], class_="sign", aria_hidden="true"),
         node("p", said["headline"], class_="headline"),
         node("p", said["meaning"], class_="meaning"),
         _limits(said),
-        class_=f"card verdict {said['state']}",
+        class_=f"card verdict {_tone(said)}",
     )
-    if len(said["strips"]) > 1:
+    leading = [strip for strip in said["strips"] if strip["role"] != "band"]
+    if len(leading) > 1:
         lines = [
             node("li", strip["name"], ": ", strip["sentence"])
-            for strip in said["strips"]
+            for strip in leading
             if strip["state"] != "developable"
         ]
         panel.append(node("ul", *lines, class_="missed"))
+    if said["bands"]:
+        panel.append(node("p", said["bands"], class_="bands note"))
     return panel
+
+
+def _tone(said: Mapping[str, Any]) -> str:
+    """The panel's color: by the limits, or by the state where none are given."""
+    passed = said["passed"]
+    return str(said["state"]) if passed is None else "passed" if passed else "failed"
 
 
 def _limits(said: Mapping[str, Any]) -> Element:
@@ -53,9 +69,9 @@ def _limits(said: Mapping[str, Any]) -> Element:
         "Limits: " + "; ".join(said["limits"]) + ".",
         class_="limits",
     )
-    if said["missed"]:
+    if said["reasons"]:
         box = node(
-            "div", box, node("ul", *(node("li", line) for line in said["missed"]), class_="missed")
+            "div", box, node("ul", *(node("li", line) for line in said["reasons"]), class_="missed")
         )
     return box
 

@@ -1,30 +1,30 @@
 """The verdict on a job in words a cutter understands, from the numbers in its JSON.
 
-Without limits a strip is only called developable or not; with limits it passes or fails.
+Without limits a strip is folded, creased, stretched or developable; with limits it passes or fails.
+The wrinkles are what was asked for, so the job's verdict is theirs; bands, walls that the program
+made, are judged apart.
 """
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass
-from typing import Any, Final, Literal
+from typing import Any, Final
 
-from .material import Limits
+from wrinkle_cad.wrinkle.strip_report import State
 
-State = Literal["developable", "inflection", "not-developable"]
+from .judging import figure, missed_limits
+from .limits import Limits
 
-_WORST_FIRST: Final[tuple[State, ...]] = ("not-developable", "inflection", "developable")
-_BUT_FOR: Final = {"developable": "", "inflection": " but for inflection rulings"}
+_WORST_FIRST: Final[tuple[State, ...]] = ("folded", "creased", "stretched", "developable")
 _MEANING: Final[dict[State, str]] = {
-    "developable": "Flat material can be bent into this shape without stretching.",
-    "inflection": (
-        "Flat material can be bent into this shape without stretching; at an inflection ruling it"
-        " lies straight while the bend changes sides."
+    "folded": "No sheet can take this shape: it would lie on itself or pass through itself.",
+    "creased": "A flat sheet takes this shape only with a sharp fold where the crease is marked.",
+    "stretched": (
+        "A flat sheet must give by so much to take this shape: its middle shrinks, or its seams"
+        " stretch."
     ),
-    "not-developable": (
-        "At the marked bridges flat material must stretch, shrink or crease to take this shape."
-    ),
+    "developable": "A flat sheet can be bent into this shape without creasing, and hardly gives.",
 }
 
 
@@ -34,10 +34,14 @@ class StripVerdict:
 
     name: str
     """The strip's name."""
+    role: str
+    """``strip``, or ``band``."""
     state: State
-    """Developable, developable but for inflection rulings, or not."""
+    """Folded, creased, stretched or developable."""
     sentence: str
     """The state with its figures."""
+    passed: bool | None
+    """Whether it keeps all limits; None without limits."""
     invalid_percent: float
     """Share of both rails that invalid bridges cover, inflection rulings left out."""
     price_of_developability: float | None
@@ -47,12 +51,12 @@ class StripVerdict:
     seam_difference_q_mm: float
     """Likewise of Q."""
     missed: tuple[str, ...]
-    """One line for each limit that the strip misses."""
+    """One sentence for each limit that the strip misses."""
 
 
 @dataclass(frozen=True, slots=True)
 class Verdict:
-    """What is said about a job."""
+    """What is said about a job: of its wrinkles, not of the bands."""
 
     state: State
     """The worst of its strips."""
@@ -64,10 +68,12 @@ class Verdict:
     """The limits that were given; empty when there were none."""
     passed: bool | None
     """Whether all limits are kept; None without limits."""
-    missed: tuple[str, ...]
-    """One line for each limit missed: what - found - limit - what to do."""
+    reasons: tuple[str, ...]
+    """One sentence for each limit that a strip misses."""
+    bands: str
+    """What is said of the bands, in one line; empty without any."""
     strips: tuple[StripVerdict, ...]
-    """One for each strip, in their order."""
+    """One for each strip and band, in their order."""
 
     def as_json(self) -> dict[str, Any]:
         """The verdict as plain values, as it stands in NAME.json."""
@@ -81,157 +87,133 @@ def judge(entries: Sequence[Mapping[str, Any]], limits: Limits) -> Verdict:
         entries: the entries of ``strips``.
         limits: what may not be exceeded; ``Limits()`` for none.
     """
-    strips = tuple(_judge_strip(entry, limits) for entry in entries)
-    states = {strip.state for strip in strips}
-    state = next((state for state in _WORST_FIRST if state in states), _WORST_FIRST[-1])
-    missed = tuple(line for strip in strips for line in strip.missed)
-    headline = strips[0].sentence if len(strips) == 1 else _headline(state, entries, strips)
+    said = tuple(_judge_strip(entry, limits) for entry in entries)
+    leading = [strip for strip in said if strip.role != "band"] or list(said)
+    bands = [strip for strip in said if strip.role == "band"]
+    names = {strip.name for strip in leading}
+    shown = [entry for entry in entries if entry["name"] in names]
+    state = _worst(leading)
+    reasons = tuple(line for strip in leading for line in strip.missed)
     return Verdict(
         state=state,
-        headline=headline,
-        meaning=_MEANING[state] + _overlap_words(entries),
+        headline=_headline(leading, shown, limits, reasons),
+        meaning=_MEANING[state] + _overlap_words(shown),
         limits=limits.stated,
-        passed=None if not limits.stated else not missed,
-        missed=missed,
-        strips=strips,
+        passed=None if not limits.stated else not reasons,
+        reasons=reasons,
+        bands=f"Bands: {_counted(bands, 'band')}." if bands and leading[0].role != "band" else "",
+        strips=said,
     )
-
-
-def check_limits(entry: Mapping[str, Any], limits: Limits) -> tuple[str, ...]:
-    """Compares one strip with the limits.
-
-    Args:
-        entry: an entry of ``strips`` in the JSON.
-        limits: what may not be exceeded.
-
-    Returns:
-        One line for each limit missed: what - found - limit - what to do.
-    """
-    name = entry["name"]
-    lines = []
-    for value, limit, what, unit, action in (
-        (entry["max_fold_deg"], limits.max_fold_deg, "largest fold", "degrees", _SOFTER),
-        (entry["max_twist_deg"], limits.max_twist_deg, "largest twist", "degrees", _STRAIGHTER),
-        (
-            invalid_percent(entry),
-            limits.max_invalid_percent,
-            "rail covered by invalid bridges",
-            "per cent",
-            "change the rails where the gap list says",
-        ),
-    ):
-        if limit is not None and value > limit:
-            lines.append(f"{name} - {what} {_figure(value)} {unit} - at most {limit:g} - {action}")
-    smallest = limits.smallest_bend_radius_mm
-    if smallest is not None:
-        radius = entry["smallest_bend_radius_mm"]
-        if radius is not None and radius < smallest:
-            lines.append(
-                f"{name} - smallest bend radius {_figure(radius)} mm - at least {smallest:g} -"
-                f" {_SOFTER}"
-            )
-    return tuple(lines)
-
-
-_SOFTER: Final = "make the rails' waves lower or longer"
-_STRAIGHTER: Final = "let the rails run more alike"
 
 
 def invalid_percent(entry: Mapping[str, Any]) -> float:
     """Share of both rails that invalid bridges cover, in per cent; inflections left out."""
     seams = entry["seam_lengths_mm"]
     whole = float(seams["p"]["space"]) + float(seams["q"]["space"])
-    return 100.0 * _invalid_mm(entry) / whole if whole > 0.0 else 0.0
-
-
-def _invalid_mm(entry: Mapping[str, Any]) -> float:
-    return float(entry["invalid_length_p_mm"]) + float(entry["invalid_length_q_mm"])
+    invalid = float(entry["invalid_length_p_mm"]) + float(entry["invalid_length_q_mm"])
+    return 100.0 * invalid / whole if whole > 0.0 else 0.0
 
 
 def _judge_strip(entry: Mapping[str, Any], limits: Limits) -> StripVerdict:
     seams, least = entry["seam_lengths_mm"], float(entry["least_bending"])
-    state = _state_of(entry)
+    missed = missed_limits(entry, limits, invalid_percent(entry))
     return StripVerdict(
         name=entry["name"],
-        state=state,
-        sentence=_sentence(entry, state),
+        role=entry.get("role", "strip"),
+        state=entry["state"],
+        sentence=_sentence(entry),
+        passed=None if not limits.stated else not missed,
         invalid_percent=invalid_percent(entry),
         price_of_developability=float(entry["bending"]) / least if least > 0.0 else None,
         seam_difference_p_mm=seams["p"]["pattern"] - seams["p"]["space"],
         seam_difference_q_mm=seams["q"]["pattern"] - seams["q"]["space"],
-        missed=check_limits(entry, limits),
+        missed=missed,
     )
 
 
-def _state_of(entry: Mapping[str, Any]) -> State:
-    if entry["invalid_bridges"] > entry["inflection_bridges"]:
-        return "not-developable"
-    return "inflection" if entry["inflection_bridges"] else "developable"
+def _sentence(entry: Mapping[str, Any]) -> str:
+    return f"{_state_words(entry)} {_other_figures(entry)}"
 
 
-def _sentence(entry: Mapping[str, Any], state: State) -> str:
-    inflections = int(entry["inflection_bridges"])
-    figures = (
-        f"largest fold {_figure(entry['max_fold_deg'])}°,"
-        f" largest twist {_figure(entry['max_twist_deg'])}°"
-    )
-    if state == "developable":
-        return f"Developable: all {entry['interior_bridges']:,} bridges; {figures}."
-    if state == "inflection":
-        # One ruling where the bend changes sides may show as a run of bridges.
-        runs = sum(gap["kind"] == "inflection" for gap in entry["gaps"])
-        rulings = f"{runs:,} inflection ruling{'s' if runs != 1 else ''}"
+def _state_words(entry: Mapping[str, Any]) -> str:
+    state: State = entry["state"]
+    if state == "folded":
+        return "Folded: the strip lies back on itself or passes through itself."
+    if state == "creased":
+        sharpest = max(entry["creases"], key=lambda crease: float(crease["angle_deg"]))
+        more = len(entry["creases"]) - 1
+        others = f" and at {more} more place{'s' if more > 1 else ''}" if more else ""
         return (
-            f"Developable but for {rulings} ({inflections:,} of"
-            f" {entry['interior_bridges']:,} bridges); {figures}."
+            f"Creased: by {figure(sharpest['angle_deg'])}° at {figure(sharpest['p_mm'])} mm of"
+            f" P{others}."
         )
-    invalid = int(entry["invalid_bridges"]) - inflections
-    beside = f" (and {inflections:,} at inflection rulings)" if inflections else ""
+    strain = figure(entry["max_strain_percent"])
+    if state == "stretched":
+        return f"Stretched: by at most {strain}%, over {figure(entry['stretched_mm'])} mm."
+    return f"Developable: strain at most {strain}%."
+
+
+def _other_figures(entry: Mapping[str, Any]) -> str:
+    radius = entry["inner_bend_radius_mm"]
+    bent = "flat" if radius is None else f"smallest bend radius {figure(radius)} mm"
+    share = 100.0 * float(entry["developable_share"])
     return (
-        f"Not developable: {invalid:,} of {entry['interior_bridges']:,} bridges{beside},"
-        f" covering {_figure(_invalid_mm(entry))} mm of rail; {figures}."
+        f"{figure(share)}% of the rails developable, {bent}, largest twist"
+        f" {figure(entry['max_twist_deg'])}°."
     )
 
 
 def _headline(
-    state: State, entries: Sequence[Mapping[str, Any]], strips: Sequence[StripVerdict]
+    strips: Sequence[StripVerdict],
+    entries: Sequence[Mapping[str, Any]],
+    limits: Limits,
+    reasons: Sequence[str],
 ) -> str:
-    """One line on several strips: how many are bad, strips and bands apart."""
-    states: dict[str, list[State]] = {}
-    for entry, strip in zip(entries, strips, strict=True):
-        states.setdefault(entry.get("role", "strip"), []).append(strip.state)
-    if state != "not-developable":
-        counts = " and ".join(_all_of(len(own), role) for role, own in states.items())
-        return f"Developable{_BUT_FOR[state]}: {counts}."
-    bad, good = [], []
-    for role, own in states.items():
-        count = own.count("not-developable")
+    """PASS or FAIL with limits, in words; the state without."""
+    if limits.stated:
+        named = f" for {limits.material}" if limits.material else ""
+        if reasons:
+            more = f" And {len(reasons) - 1} more." if len(reasons) > 1 else ""
+            return f"FAIL{named}: {reasons[0]}{more}"
+        return f"PASS{named}: {_kept_words(entries, limits)}."
+    if len(strips) == 1:
+        return strips[0].sentence
+    worst = _worst(strips)
+    if all(strip.state == worst for strip in strips):
+        return (
+            f"{worst.capitalize()}: {'both' if len(strips) == 2 else f'all {len(strips)}'} strips."
+        )
+    return f"{_counted(strips, 'strip').capitalize()}."
+
+
+def _kept_words(entries: Sequence[Mapping[str, Any]], limits: Limits) -> str:
+    parts = []
+    if limits.max_strain_percent is not None:
+        strain = max(float(entry["max_strain_percent"]) for entry in entries)
+        parts.append(f"gives {limits.max_strain_percent:g}%, needs {figure(strain)}%")
+    radii = [entry["inner_bend_radius_mm"] for entry in entries]
+    bent = [float(radius) for radius in radii if radius is not None]
+    if limits.min_radius_mm is not None and bent:
+        parts.append(f"bends to {limits.min_radius_mm:g} mm, needs {figure(min(bent))} mm")
+    return "; ".join(parts) or "every limit is kept"
+
+
+def _counted(strips: Sequence[StripVerdict], role: str) -> str:
+    """How many strips are in which state, the worst first: "1 of 3 bands stretched, ..."."""
+    parts = []
+    for state in _WORST_FIRST:
+        count = sum(strip.state == state for strip in strips)
         if count:
-            some = f"{count} of {len(own)} {role}s"
-            bad.append(_all_of(count, role) if count == len(own) else some)
-        else:
-            worst = "inflection" if "inflection" in own else "developable"
-            every = _all_of(len(own), role)
-            verb = "is" if len(own) == 1 else "are"
-            good.append(f" {every.capitalize()} {verb} developable{_BUT_FOR[worst]}.")
-    return f"Not developable: {' and '.join(bad)}.{''.join(good)}"
+            parts.append(f"{count} of {len(strips)} {role}s {state}")
+    return ", ".join(parts)
 
 
-def _all_of(count: int, role: str) -> str:
-    if count == 1:
-        return f"the {role}"
-    return f"both {role}s" if count == 2 else f"all {count} {role}s"
+def _worst(strips: Sequence[StripVerdict]) -> State:
+    states = {strip.state for strip in strips}
+    return next((state for state in _WORST_FIRST if state in states), "developable")
 
 
 def _overlap_words(entries: Sequence[Mapping[str, Any]]) -> str:
     if any(entry["overlaps"] for entry in entries):
         return " Laid flat in one piece it would cover itself, so the pattern is cut in parts."
     return ""
-
-
-def _figure(value: float) -> str:
-    """Three significant digits, no more than four decimals; round-off reads 0."""
-    if abs(value) < 5e-5:
-        return "0"
-    digits = max(0, 2 - math.floor(math.log10(abs(value))))
-    return f"{value:,.{min(digits, 4)}f}"

@@ -8,6 +8,7 @@ from typing import ClassVar
 from wrinkle_cad import settings
 from wrinkle_cad.options.checking import check_options
 from wrinkle_cad.options.option import option
+from wrinkle_cad.pattern.piece.options import Direction
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -70,3 +71,4 @@ class StripArguments(StripSettings):
     color: tuple[float, float, float] = field(default=settings.STRIP_COLOR, kw_only=True)
     thickness: float = field(default=0.0, kw_only=True)
     k_factor: float = field(default=settings.K_FACTOR, kw_only=True)
+    grain: Direction = field(default="along", kw_only=True)

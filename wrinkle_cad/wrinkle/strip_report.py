@@ -72,6 +72,10 @@ class StripReport:
     """Of the surface at its sharpest place; 0 at a crease, infinite when flat."""
     inner_bend_radius_mm: float
     """The same at the inner face of the material."""
+    bend_radius_along_grain_mm: float
+    """At the inner face, of the bend along the material's grain."""
+    bend_radius_across_grain_mm: float
+    """Likewise across it."""
     max_twist_deg: float
     """Largest turn of the tangent plane along a ruling."""
     samples_p: int
@@ -139,6 +143,7 @@ def report_on(
     lengths_mm: tuple[float, float],
     least_bending: float,
     gaps: Sequence[Gap],
+    grain_radii_mm: tuple[float, float],
     thickness_mm: float = 0.0,
     k_factor: float = settings.K_FACTOR,
 ) -> StripReport:
@@ -155,10 +160,15 @@ def report_on(
         lengths_mm: of the directrices P and Q in space.
         least_bending: energy of the least-bending triangulation of the same rails.
         gaps: the runs of invalid bridges.
+        grain_radii_mm: smallest bend radii of the surface along and across the grain.
         thickness_mm: of the material.
         k_factor: where its neutral layer lies, in shares of the thickness from the inner face.
     """
     radius = ruled.smallest_bend_radius(math.radians(settings.CREASE_DEG))
+    by_grain = grain_radii_mm if radius > 0.0 else (0.0, 0.0)
+    inner, along, across = (
+        inner_bend_radius(at_surface, thickness_mm, k_factor) for at_surface in (radius, *by_grain)
+    )
     failed = ~triangulation.valid & ~triangulation.inflection
     failed[[0, -1]] = False
     p_invalid, q_invalid = covered_lengths(triangulation, failed)
@@ -176,7 +186,9 @@ def report_on(
             for crease in ruled.creases
         ),
         smallest_bend_radius_mm=radius,
-        inner_bend_radius_mm=inner_bend_radius(radius, thickness_mm, k_factor),
+        inner_bend_radius_mm=inner,
+        bend_radius_along_grain_mm=along,
+        bend_radius_across_grain_mm=across,
         max_twist_deg=math.degrees(ruled.largest_twist),
         samples_p=len(triangulation.p),
         samples_q=len(triangulation.q),

@@ -23,6 +23,7 @@ from wrinkle_cad.strip.gaps import find_gaps
 from wrinkle_cad.strip.triangulation import Triangulation, triangulate
 
 from .exact_surface import exact_surface
+from .grain import radii_by_grain
 from .loudness import warn_of
 from .strip_findings import area_findings, flat_findings, shape_findings
 from .strip_report import Role, StripReport, report_on
@@ -33,6 +34,7 @@ if TYPE_CHECKING:
     from OCP.TopoDS import TopoDS_Shell
 
     from wrinkle_cad.cad.rail.directrix import Directrix
+    from wrinkle_cad.pattern.piece.options import Direction
     from wrinkle_cad.strip.curve.sampling import Samples
     from wrinkle_cad.strip.rulings.surface import RuledStrip
 
@@ -61,6 +63,7 @@ class TriangulatedStrip:
         role: ``strip``, or ``band`` between a strip and the body.
         thickness: mm; of the material.
         k_factor: where its neutral layer lies, in shares of the thickness from the inner face.
+        grain: of the material: ``along`` or ``across`` the strip, or a direction in space.
         findings: what was noticed while it was made.
     """
 
@@ -79,6 +82,7 @@ class TriangulatedStrip:
         role: Role = "strip",
         thickness: float = 0.0,
         k_factor: float = settings.K_FACTOR,
+        grain: Direction = "along",
         findings: tuple[Finding, ...] = (),
     ) -> None:
         self.p, self.q = p, q
@@ -91,6 +95,7 @@ class TriangulatedStrip:
         self.role: Role = role
         self.thickness = thickness
         self.k_factor = k_factor
+        self.grain: Direction = grain
         self._noticed = (*findings, *shape_findings(name, triangulation))
         self._is_told = warn_of(self._noticed, 3)
         self._shells: dict[str, TopoDS_Shell] = {}
@@ -232,6 +237,9 @@ class TriangulatedStrip:
             lengths_mm=self._rail_lengths(),
             least_bending=self.least_bending.bending,
             gaps=find_gaps(self.triangulation),
+            grain_radii_mm=radii_by_grain(
+                self.triangulation, self.unrolling, self.ruled, self.grain
+            ),
             thickness_mm=self.thickness,
             k_factor=self.k_factor,
         )

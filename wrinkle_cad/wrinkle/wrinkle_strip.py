@@ -12,6 +12,7 @@ from wrinkle_cad.errors import Finding
 from wrinkle_cad.options.checking import check_known
 from wrinkle_cad.options.option import options_of
 from wrinkle_cad.options.signature import takes_options_of
+from wrinkle_cad.pattern.piece.options import Direction
 from wrinkle_cad.strip.triangulation import triangulate
 
 from .options import StripArguments, StripSettings
@@ -34,6 +35,7 @@ class WrinkleStrip(TriangulatedStrip):
         color: of the surface, (red, green, blue) from 0 to 1.
         thickness: mm; of the material, which bends more sharply at its inner face.
         k_factor: where its neutral layer lies, in shares of the thickness from the inner face.
+        grain: of the material: ``along`` or ``across`` the strip, or a direction in space.
         options: those of ``StripSettings``, by name; ``help(WrinkleStrip.__init__)`` lists them.
 
     Raises:
@@ -63,6 +65,7 @@ class WrinkleStrip(TriangulatedStrip):
         color: tuple[float, float, float] = settings.STRIP_COLOR,
         thickness: float = 0.0,
         k_factor: float = settings.K_FACTOR,
+        grain: Direction = "along",
         **options: Any,
     ) -> None:
         """Finds the strip."""
@@ -98,6 +101,7 @@ class WrinkleStrip(TriangulatedStrip):
             surface=chosen.surface,
             thickness=thickness,
             k_factor=k_factor,
+            grain=grain,
             findings=_orientation_findings(name) if was_turned else (),
         )
 

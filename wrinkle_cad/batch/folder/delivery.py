@@ -21,7 +21,8 @@ from .manifest import OutputFile, Record, record_to_line
 
 _SUMS: Final = ("interior_bridges", "invalid_bridges", "inflection_bridges")
 _SUMMED_MEASURES: Final = ("area_3d_mm2", "area_pattern_mm2")
-_LARGEST: Final = ("max_fold_deg", "max_twist_deg")
+_LARGEST: Final = ("max_strain_percent", "max_twist_deg", "max_fold_deg")
+_STATES: Final = ("developable", "stretched", "creased", "folded")
 
 
 def deliver(
@@ -93,8 +94,9 @@ def failed_record(base: Record, failure: JobFailed) -> Record:
 def figures_of(summary: Mapping[str, Any]) -> dict[str, Any]:
     """The figures of a job that a table of many jobs shows, over all its strips.
 
-    Counts and areas are summed, folds and twists are the largest, ``developability`` is the share
-    of interior bridges that are locally convex or inflections, in per cent (100 without any).
+    Counts and areas are summed. ``state`` is the worst, the measures are the largest, the radius is
+    the smallest and ``developability``, in per cent of the rails, the least of the wrinkles; of the
+    bands only where there is no wrinkle.
     """
     strips = [strip for strip in summary.get("strips", ()) if isinstance(strip, Mapping)]
     if not strips:
@@ -104,12 +106,18 @@ def figures_of(summary: Mapping[str, Any]) -> dict[str, Any]:
         figures[name] = sum(int(strip.get(name, 0)) for strip in strips)
     for name in _SUMMED_MEASURES:
         figures[name] = math.fsum(float(strip.get(name, 0.0)) for strip in strips)
-    for name in _LARGEST:
-        figures[name] = max(float(strip.get(name, 0.0)) for strip in strips)
     figures["overlaps"] = any(bool(strip.get("overlaps")) for strip in strips)
-    interior = figures["interior_bridges"]
-    failed = figures["invalid_bridges"] - figures["inflection_bridges"]
-    figures["developability"] = 100.0 * (1.0 - failed / interior) if interior else 100.0
+    leading = [strip for strip in strips if strip.get("role") != "band"] or strips
+    figures["state"] = max((strip.get("state", _STATES[0]) for strip in leading), key=_STATES.index)
+    for name in _LARGEST:
+        figures[name] = max(float(strip.get(name, 0.0)) for strip in leading)
+    creases = [crease for strip in leading for crease in strip.get("creases", ())]
+    figures["max_crease_deg"] = max((float(each["angle_deg"]) for each in creases), default=0.0)
+    radii = [strip.get("inner_bend_radius_mm") for strip in leading]
+    bent = [float(radius) for radius in radii if radius is not None]
+    figures["inner_bend_radius_mm"] = min(bent) if bent else None
+    shares = [float(strip.get("developable_share", 1.0)) for strip in leading]
+    figures["developability"] = 100.0 * min(shares)
     return figures
 
 

@@ -65,10 +65,12 @@ document.querySelectorAll("th button").forEach(function (button) {{
 """
 _HEADER: Final = (
     "file",
-    "developable bridges",
-    "not convex",
-    "largest fold",
-    "largest twist",
+    "state",
+    "developable rails",
+    "strain",
+    "crease",
+    "bend radius",
+    "twist",
     "pattern area",
     "seconds",
     "outcome",
@@ -110,11 +112,14 @@ def _rank(record: Record) -> tuple[bool, float, str]:
 
 
 def _row(record: Record) -> str:
+    state = printable(str(record.figures.get("state", "")))
     cells = [
         _cell(_link(record), record.input),
+        _cell(html.escape(state), state),
         _developability(record),
-        _number(record, "invalid_bridges", "{:.0f}"),
-        _number(record, "max_fold_deg", "{:.2f}&deg;"),
+        _number(record, "max_strain_percent", "{:.3f}%"),
+        _number(record, "max_crease_deg", "{:.1f}&deg;"),
+        _number(record, "inner_bend_radius_mm", "{:.2f} mm"),
         _number(record, "max_twist_deg", "{:.2f}&deg;"),
         _number(record, "area_pattern_mm2", "{:.1f} mm&sup2;"),
         _cell(f"{total_seconds(record):.2f}", f"{total_seconds(record):.6f}", "number"),

@@ -17,14 +17,18 @@ TABLE_NAME: Final = "summary.csv"
 
 FIGURES: Final = (
     "strips",
+    "state",
     "developability",
+    "max_strain_percent",
+    "max_crease_deg",
+    "inner_bend_radius_mm",
+    "max_twist_deg",
     "interior_bridges",
     "invalid_bridges",
     "inflection_bridges",
     "area_3d_mm2",
     "area_pattern_mm2",
     "max_fold_deg",
-    "max_twist_deg",
     "overlaps",
 )
 """Names of a record's figures, in the order of the columns."""
