@@ -56,9 +56,6 @@ CREASE_DEG: Final = 5.0
 STRETCH_PERCENT: Final = 0.1
 """A sheet that must give more is called stretched: half of the 0.2 at which sheet metal yields."""
 
-FOLDED_BACK_DEG: Final = 179.0
-"""A fold at a bridge by so much lays the strip upon itself."""
-
 K_FACTOR: Final = 0.5
 """Where a material's neutral layer lies when nothing is known: in the middle."""
 

@@ -29,7 +29,11 @@ def figures_panel(numbers: Numbers) -> Element:
     """The key figures of the wrinkle that asks most of a sheet, as tiles."""
     worst = _worst_strip(numbers)
     entry, said = f"/strips/{worst}", f"/verdict/strips/{worst}"
-    p95 = node("small", "but for a twentieth of the length at most ", numbers.show(f"{entry}/p95_strain_percent", "%", 3))
+    p95 = node(
+        "small",
+        "but for a twentieth of the length at most ",
+        numbers.show(f"{entry}/p95_strain_percent", "%", 3),
+    )
     tiles = (
         ("Strain", [numbers.show(f"{entry}/max_strain_percent", "%", 3), p95]),
         ("Sharpest crease", _crease(numbers, entry)),

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
@@ -16,6 +16,10 @@ from wrinkle_cad.strip.triangulation import Triangulation
 
 if TYPE_CHECKING:
     from wrinkle_cad.strip.flat.unrolling import Unrolling
+
+
+FOLDED: Final = ("folded-back", "passes-through-itself")
+"""Codes of what no sheet can do."""
 
 
 def shape_findings(name: str, triangulation: Triangulation) -> tuple[Finding, ...]:

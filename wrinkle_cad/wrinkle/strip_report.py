@@ -10,7 +10,6 @@ from typing import Any, Literal
 import numpy as np
 
 from wrinkle_cad import settings
-from wrinkle_cad.strip.crossings import self_crossings
 from wrinkle_cad.strip.flat.unrolling import Unrolling
 from wrinkle_cad.strip.gaps import Gap, covered_lengths, gap_entry
 from wrinkle_cad.strip.rulings.surface import RuledStrip, inner_bend_radius
@@ -144,6 +143,7 @@ def report_on(
     least_bending: float,
     gaps: Sequence[Gap],
     grain_radii_mm: tuple[float, float],
+    is_folded: bool = False,
     thickness_mm: float = 0.0,
     k_factor: float = settings.K_FACTOR,
 ) -> StripReport:
@@ -161,6 +161,7 @@ def report_on(
         least_bending: energy of the least-bending triangulation of the same rails.
         gaps: the runs of invalid bridges.
         grain_radii_mm: smallest bend radii of the surface along and across the grain.
+        is_folded: whether it folds back on itself or passes through itself.
         thickness_mm: of the material.
         k_factor: where its neutral layer lies, in shares of the thickness from the inner face.
     """
@@ -176,7 +177,7 @@ def report_on(
         name=name,
         role=role,
         closed=triangulation.is_closed,
-        state=_state(triangulation, ruled),
+        state=_state(ruled, is_folded=is_folded),
         developable_share=ruled.developable_share,
         max_strain_percent=100.0 * ruled.strain.largest,
         p95_strain_percent=100.0 * ruled.strain.percentile(0.95),
@@ -215,10 +216,8 @@ def report_on(
     )
 
 
-def _state(triangulation: Triangulation, ruled: RuledStrip) -> State:
-    if _largest_fold_deg(triangulation) >= settings.FOLDED_BACK_DEG:
-        return "folded"
-    if self_crossings(triangulation).triangles.size:
+def _state(ruled: RuledStrip, *, is_folded: bool) -> State:
+    if is_folded:
         return "folded"
     if math.degrees(ruled.largest_crease) >= settings.CREASE_DEG:
         return "creased"

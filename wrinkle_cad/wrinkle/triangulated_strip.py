@@ -25,7 +25,7 @@ from wrinkle_cad.strip.triangulation import Triangulation, triangulate
 from .exact_surface import exact_surface
 from .grain import radii_by_grain
 from .loudness import warn_of
-from .strip_findings import area_findings, flat_findings, shape_findings
+from .strip_findings import FOLDED, area_findings, flat_findings, shape_findings
 from .strip_report import Role, StripReport, report_on
 
 if TYPE_CHECKING:
@@ -237,6 +237,7 @@ class TriangulatedStrip:
             lengths_mm=self._rail_lengths(),
             least_bending=self.least_bending.bending,
             gaps=find_gaps(self.triangulation),
+            is_folded=any(finding.code in FOLDED for finding in self._noticed),
             grain_radii_mm=radii_by_grain(
                 self.triangulation, self.unrolling, self.ruled, self.grain
             ),
