@@ -1,6 +1,7 @@
 from __future__ import annotations
 
 import itertools
+from datetime import UTC, datetime
 from pathlib import Path
 
 import numpy as np
@@ -88,3 +89,22 @@ def test_dxf_svg_and_pdf_are_written_from_a_script(tmp_path: Path) -> None:
     assert (tmp_path / "a.svg").read_text().startswith("<?xml")
     assert (tmp_path / "a.pdf").read_bytes().startswith(b"%PDF")
     assert "Piece Name:" in (tmp_path / "a.dxf").read_text()
+
+
+def test_an_export_carries_todays_date_unless_one_is_given(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    strip = WrinkleStrip([(0, 0, 0), (90, 0, 0)], [(0, 30, 0), (90, 30, 0)])
+    path = tmp_path / "a.dxf"
+
+    def stated(timestamp: datetime | None = None) -> str:
+        strip.pattern().export_dxf(path, profile="aama", timestamp=timestamp)
+        return path.read_text().split("Creation Date: ")[1][:10]
+
+    monkeypatch.delenv("SOURCE_DATE_EPOCH", raising=False)
+    days = {datetime.now(UTC).strftime("%d-%m-%Y")}
+    today = stated()
+    assert today in days | {datetime.now(UTC).strftime("%d-%m-%Y")}
+    assert stated(datetime(2024, 2, 29, tzinfo=UTC)) == "29-02-2024"
+    monkeypatch.setenv("SOURCE_DATE_EPOCH", "0")
+    assert stated() == "01-01-1970"

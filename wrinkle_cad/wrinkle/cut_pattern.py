@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
-from datetime import datetime
+from datetime import UTC, datetime
 from pathlib import Path
 from typing import TYPE_CHECKING, Protocol
 
@@ -94,7 +95,8 @@ class Pattern:
             profile: ``cutter``, ``aama``, ``astm`` or a TOML file of layers.
             version: ``R12``, ``R2000`` or ``R2010``; when None, R2000, and R12 for aama, astm.
             curves: what curved cut lines become: ``lines``, ``arcs`` or ``splines``.
-            timestamp: the time in the file; the start of 1970 when None.
+            timestamp: the time in the file; when None the one that the environment variable
+                SOURCE_DATE_EPOCH gives, else now.
             test_square: adds a square of 100 mm.
 
         Raises:
@@ -109,7 +111,7 @@ class Pattern:
             profile=profile,
             version=version,
             curves=curves,
-            timestamp=timestamp,
+            timestamp=_moment() if timestamp is None else timestamp,
             test_square=test_square,
         )
 
@@ -143,6 +145,14 @@ class Pattern:
         from wrinkle_cad.pattern.formats.pdf import write_pdf
 
         return write_pdf(Path(path), self.pieces, profile=profile)
+
+
+def _moment() -> datetime:
+    """The time of reproducible builds where it is set, else now."""
+    given = os.environ.get("SOURCE_DATE_EPOCH", "")
+    if given.isdecimal():
+        return datetime.fromtimestamp(int(given), UTC)
+    return datetime.now(UTC).replace(microsecond=0)
 
 
 def pattern_of_strips(

@@ -236,3 +236,62 @@ def test_writing_tells_the_screen_nothing(capfd):
     for profile in ("cutter", "aama"):
         dxf_bytes(pieces_of(strips.rectangle()), profile=profile, version="R12")
     assert capfd.readouterr() == ("", "")
+
+
+def ring_sector(radius=100.0, width=30.0, turn=1.5, tolerance=0.05):
+    """A flat ring sector, sampled as finely as flat rails are."""
+    count = int(np.ceil(turn / (2.0 * np.arccos(1.0 - 0.2 * tolerance / radius)))) + 1
+    angle = np.linspace(0.0, turn, count)
+    ring = np.column_stack((np.cos(angle), np.sin(angle), 0.0 * angle))
+    return strips.unrolled((radius + width) * ring, radius * ring)
+
+
+@pytest.mark.parametrize("curves", ["lines", "arcs", "splines"])
+def test_curves_of_any_kind_stay_within_the_one_tolerance(curves):
+    from ezdxf.path import make_path
+
+    tolerance = 0.05
+    settings = PieceSettings(seam_allowance=(6.0,) * 4, tolerance=tolerance)
+    pieces = make_pieces(*ring_sector(), name="ring", settings=settings)
+    space = ezdxf.read(io.StringIO(dxf_bytes(pieces, curves=curves).decode())).modelspace()
+    for layer, radii in (("CUT", (94.0, 136.0)), ("SEW", (100.0, 130.0))):
+        (contour,) = space.query(f"*[layer=='{layer}']")
+        points = np.array([tuple(p)[:2] for p in make_path(contour).flattening(1e-3)])
+        shift = offset_of(pieces[0], space)
+        corners = pieces[0].cut_line[pieces[0].cut.corners] + shift
+        points = points[np.hypot(*(points[:, None] - corners).T).min(axis=0) > 15.0]
+        away = np.hypot(*(points - fitted_centre(pieces[0]) - shift).T)
+        for radius in radii:
+            near = away[np.abs(away - radius) < 0.5]
+            assert len(near) > 20
+            assert np.abs(near - radius).max() <= tolerance + 1e-3
+
+
+def fitted_centre(piece):
+    """The centre of a ring sector's sew line: where normals of its outer seam meet."""
+    seam = piece.sew_line[: np.flatnonzero(piece.sew.sides == 0)[-1] + 1]
+    rows = np.column_stack((2.0 * seam, np.ones(len(seam))))
+    answer = np.linalg.lstsq(rows, (seam**2).sum(axis=1), rcond=None)[0]
+    return answer[:2]
+
+
+def offset_of(piece, space):
+    (cut,) = space.query("*[layer=='CUT']")
+    from ezdxf.path import make_path
+
+    points = np.array([tuple(p)[:2] for p in make_path(cut).flattening(1e-3)])
+    return points.min(axis=0) - piece.cut_line.min(axis=0)
+
+
+@pytest.mark.parametrize("profile", ["cutter", "aama", "astm"])
+def test_our_files_pass_our_check_in_every_version_and_kind_of_curve(profile, tmp_path):
+    settings = PieceSettings(seam_allowance=(6.0,) * 4, hand="left", notches=3, rulings=True)
+    pieces = make_pieces(*strips.random_strip(3), name="s", settings=settings)
+    for version in (None, *VERSIONS):
+        for curves in ("lines", "arcs", "splines") if profile == "cutter" else ("lines",):
+            if version == "R12" and curves == "splines":
+                continue
+            path = tmp_path / "made.dxf"
+            write_dxf(path, pieces, profile=profile, version=version, curves=curves)
+            report = judge_dxf(path)
+            assert report.is_clean, (version, curves, report.findings)

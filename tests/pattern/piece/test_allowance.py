@@ -161,3 +161,26 @@ def test_an_allowance_that_closes_a_ring_leaves_a_cut_out():
     assert len(holes) == 1
     assert shapely.Polygon(holes[0]).is_valid
     assert shapely.Polygon(cut.points).contains(shapely.Polygon(holes[0]))
+
+
+@pytest.mark.parametrize("shift", [-20.0, -35.0, 20.0])
+@pytest.mark.parametrize("side", ["P", "Q"])
+def test_beside_a_bare_edge_the_allowance_ends_on_the_line_of_that_edge(shift, side):
+    """A strap of 100 x 40 mm whose start slants; allowance on one seam only."""
+    p = np.array(((0.0, 0.0, 0.0), (100.0, 0.0, 0.0)))
+    q = np.array(((shift, 40.0, 0.0), (100.0, 40.0, 0.0)))
+    widths = (6.0, 0.0, 0.0, 0.0) if side == "P" else (0.0, 6.0, 0.0, 0.0)
+    settings = PieceSettings(seam_allowance=widths)
+    (piece,) = make_pieces(*strips.unrolled(p, q), name="s", settings=settings)
+    start = piece.sew_line[piece.sew.corners]
+    first, last = start[0], start[-1]
+    slope = (last - first) / 40.0
+    corner = first - 6.0 * slope if side == "P" else last + 6.0 * slope
+    nearest = np.hypot(*(piece.cut_line - corner).T).min()
+    assert nearest < 1e-6
+    # A parallelogram of the seam's length stands on the seam, less or more the slant.
+    area = shapely.Polygon(piece.cut_line).area - shapely.Polygon(piece.sew_line).area
+    seam = 100.0 if side == "P" else 100.0 - shift
+    away = abs(corner[0] - (first if side == "P" else last)[0])
+    grows = (shift > 0.0) == (side == "P")
+    assert area == pytest.approx(6.0 * (seam + (0.5 if grows else -0.5) * away), abs=1e-6)

@@ -7,6 +7,7 @@ points for holes, single-line texts. No blocks. Millimetres, said in the header 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import Final
 
 import ezdxf
 import numpy as np
@@ -22,6 +23,10 @@ from .contours import closed_spline, with_arcs
 from .drawing import Drawing, Stroke, draw
 from .layers import LINE_TYPES, LayerStyle, Profile, Role
 from .plain_text import ascii_text, text_changed
+
+_CURVE_PER_TOLERANCE: Final = 0.5
+"""Arcs and splines leave the polygon of an outline by this share of the chord tolerance: with those
+of the flat rails (0.2) and of the allowance's facets (0.3) it stays within the whole."""
 
 
 def cutter_document(
@@ -94,18 +99,17 @@ def _remove_unused_layers(document: DxfDocument) -> None:
 def _write_strokes(
     space: Modelspace, drawing: Drawing, piece: PatternPiece, profile: Profile, curves: Curves
 ) -> None:
+    tolerance = _CURVE_PER_TOLERANCE * piece.tolerance
     for stroke in drawing.strokes:
         if stroke.role in profile.styles:
             style = profile.styles[stroke.role]
             if stroke.is_closed and curves == "arcs":
-                bulged = with_arcs(stroke.points, tolerance=piece.tolerance)
+                bulged = with_arcs(stroke.points, tolerance=tolerance)
                 rows = [(*rounded(row[:2]), float(row[2])) for row in bulged]
                 space.add_lwpolyline(rows, "xyb", close=True, dxfattribs=attributes(style))
             elif stroke.is_closed and curves == "splines":
                 spline = space.add_spline(dxfattribs=attributes(style))
-                spline.apply_construction_tool(
-                    closed_spline(stroke.points, tolerance=piece.tolerance)
-                )
+                spline.apply_construction_tool(closed_spline(stroke.points, tolerance=tolerance))
             else:
                 _write_polyline(space, stroke, style)
     for spot in drawing.spots:

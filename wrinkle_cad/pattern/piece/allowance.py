@@ -10,6 +10,8 @@ shapely's: nothing here intersects curves by hand.
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
+from typing import Final
 
 import numpy as np
 import shapely
@@ -20,6 +22,9 @@ from wrinkle_cad.strip.portable import cos, dot, sin
 from .options import PerSide
 from .outline import closed_turns, corner_vertices
 from .piece import Floats, Ints, Outline, frozen, make_outline
+
+_FACETS_PER_TOLERANCE: Final = 0.3
+"""The facets around an arc leave it by this share of the chord tolerance."""
 
 
 def cut_outline(
@@ -35,7 +40,9 @@ def cut_outline(
     """
     if not any(width > 0.0 for width in widths):
         return sew, ()
-    region = shapely.union_all(_parts(sew, np.array(widths), mitre_limit, tolerance))
+    allowance = shapely.union_all(_parts(sew, np.array(widths), mitre_limit, tolerance))
+    beyond = shapely.union_all(list(_beyond_bare_edges(sew, np.array(widths), mitre_limit)))
+    region = shapely.union(allowance.difference(beyond), shapely.Polygon(sew.points))
     if region.geom_type != "Polygon":
         region = max(region.geoms, key=lambda part: part.area)
     cut = _cleaned(region.exterior, tolerance)
@@ -71,10 +78,37 @@ def _parts(
         if sew.corners[i]:
             tips = _mitre(along[j], along[i], width[j], width[i], mitre_limit)
         else:
-            tips = _fan(outward[i], float(turn[i]), width[i], tolerance)
+            tips = _fan(outward[i], float(turn[i]), width[i], _FACETS_PER_TOLERANCE * tolerance)
         ring = np.vstack((sew.points[i], second[j], sew.points[i] + tips, first[i]))
         parts.append(shapely.Polygon(ring))
     return parts
+
+
+def _beyond_bare_edges(
+    sew: Outline, widths: Floats, mitre_limit: float
+) -> Iterator[shapely.Polygon]:
+    """Yields what lies beyond the line of an edge of width 0 at an obtuse corner beside it.
+
+    There the allowance of the other edge ends on that line, as it does at a mitred corner, and not
+    square to its own edge, which would leave a tip beside the bare edge.
+    """
+    after = np.roll(sew.points, -1, axis=0)
+    along = after - sew.points
+    along = along / np.hypot(along[:, 0], along[:, 1])[:, None]
+    width = widths[sew.sides]
+    turn = closed_turns(sew.points)
+    for i in np.flatnonzero(sew.corners & (turn > 0.0) & (turn < 0.5 * np.pi)):
+        width_in, width_on = float(width[i - 1]), float(width[i])
+        if (width_in > 0.0) == (width_on > 0.0):
+            continue
+        reach = max(width_in, width_on) / float(np.sin(turn[i]))
+        if reach > mitre_limit * max(width_in, width_on):
+            continue
+        bare = along[i - 1] if width_in == 0.0 else along[i]
+        ahead = reach * (bare if width_in == 0.0 else -bare)
+        aside = reach * np.array((bare[1], -bare[0]))
+        corner = sew.points[i]
+        yield shapely.Polygon((corner, corner + ahead, corner + ahead + aside, corner + aside))
 
 
 def _mitre(
