@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+from functools import partial
 from typing import Any
 
 from wrinkle_cad import settings
 from wrinkle_cad.cad.rail.apart import check_apart
 from wrinkle_cad.cad.rail.directrix import check_distinct, make_directrix, orient_alike
-from wrinkle_cad.cad.rail.joint_samples import sample_rails
+from wrinkle_cad.cad.rail.joint_samples import Search, sample_rails, search_between
 from wrinkle_cad.errors import Finding
 from wrinkle_cad.options.checking import check_known
 from wrinkle_cad.options.option import options_of
@@ -74,20 +75,10 @@ class WrinkleStrip(TriangulatedStrip):
         given_p, given_q = make_directrix(p, name="P"), make_directrix(q, name="Q")
         check_distinct(given_p, given_q)
         p_rail, q_rail, was_turned = orient_alike(given_p, given_q)
-        p_samples, q_samples = sample_rails(p_rail, q_rail, chosen.tolerance, chosen.max_chord)
-        check_apart(p_rail, q_rail, p_samples, q_samples)
-        triangulation = triangulate(
-            p_samples.points,
-            q_samples.points,
-            criteria=chosen.criteria,
-            search=chosen.search,
-            energy=chosen.energy,
-            price=chosen.price,
-            planarity=(
-                settings.planarity_from(chosen.tolerance)
-                if chosen.planarity is None
-                else chosen.planarity
-            ),
+        samples = sample_rails(p_rail, q_rail, chosen.tolerance, chosen.max_chord)
+        check_apart(p_rail, q_rail, *samples)
+        triangulation, (p_samples, q_samples) = search_between(
+            (p_rail, q_rail), samples, chosen.tolerance, _search(chosen)
         )
         super().__init__(
             p_rail,
@@ -104,6 +95,18 @@ class WrinkleStrip(TriangulatedStrip):
             grain=grain,
             findings=_orientation_findings(name) if was_turned else (),
         )
+
+
+def _search(chosen: StripSettings) -> Search:
+    planarity = chosen.planarity
+    return partial(
+        triangulate,
+        criteria=chosen.criteria,
+        search=chosen.search,
+        energy=chosen.energy,
+        price=chosen.price,
+        planarity=settings.planarity_from(chosen.tolerance) if planarity is None else planarity,
+    )
 
 
 def _orientation_findings(name: str) -> tuple[Finding, ...]:

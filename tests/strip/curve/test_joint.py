@@ -11,6 +11,7 @@ from tests.strip.curve.test_sampling import b_spline, chord_gaps
 from wrinkle_cad.strip.curve.joint import sample_against
 from wrinkle_cad.strip.curve.polyline import arc_lengths, points_at, segment_lengths
 from wrinkle_cad.strip.curve.sampling import Samples, sample_curve
+from wrinkle_cad.strip.triangulation import triangulate
 
 FloatArray = NDArray[np.float64]
 Curve = Callable[[FloatArray], FloatArray]
@@ -175,3 +176,61 @@ def test_a_rail_that_is_a_point_or_coincides_with_the_other_adds_nothing() -> No
     samples = alone(rail)
     for other in (np.array([[20.0, 50, 0]]), samples.points.copy()):
         assert sample_against(rail[0], samples, other, TOLERANCE) is samples
+
+
+def wavy_rail(seed: int) -> tuple[Curve, float]:
+    """A wave of 2 to 8 periods beside the x axis, 200 mm long, and how far away it is."""
+    generator = np.random.default_rng(seed)
+    waves, width = generator.integers(2, 9), float(generator.choice([10.0, 20.0, 40.0, 80.0]))
+    height, sideways = generator.choice([2.0, 6.0, 15.0]), generator.uniform(0, 0.5)
+    k, phase = 2 * np.pi * waves / 200, generator.uniform(0, np.pi)
+    sideways *= min(height, 0.8 * width)
+
+    def point_at(t: FloatArray) -> FloatArray:
+        return np.stack(
+            (t, width + sideways * np.cos(k * t + phase), height * np.sin(k * t)), axis=1
+        )
+
+    return point_at, width
+
+
+def four_times(samples: Samples, point_at: Curve) -> FloatArray:
+    """(4 k - 3, 3): the samples, and three more curve points between neighbours."""
+    count = len(samples.parameters)
+    places = np.arange(4 * count - 3) / 4
+    return point_at(np.interp(places, np.arange(count), samples.parameters))
+
+
+def bendings(seed: int) -> tuple[float, float, float]:
+    """Of a wavy rail against a straight one: sampled jointly, four times as densely, alone."""
+    rails: list[tuple[Curve, tuple[float, float], list[float]]] = [
+        (wavy_rail(seed)[0], (0.0, 200.0), []),
+        polyline((0, 0), (200, 0)),
+    ]
+    planarity = 1e-3 * TOLERANCE
+    p, q = jointly(*rails)
+    dense = [four_times(samples, rail[0]) for samples, rail in zip((p, q), rails, strict=True)]
+    single = [alone(rail).points for rail in rails]
+    return (
+        triangulate(p.points, q.points, planarity=planarity).bending,
+        triangulate(dense[0], dense[1], planarity=planarity).bending,
+        triangulate(single[0], single[1], planarity=planarity, price=None).bending,
+    )
+
+
+def check_waves(seeds: range) -> None:
+    found = np.array([bendings(seed) for seed in seeds])
+    assert np.mean(found[:, 0] <= 1.15 * found[:, 1]) >= 0.9
+    # Where the best surface gathers its rulings at two points anyway, the line's other samples cut
+    # the plane triangle between them into lower ones, which count as a little stiffer.
+    assert np.all(found[:, 0] <= 1.02 * found[:, 2])
+    assert np.mean(found[:, 0] <= found[:, 2]) >= 0.75
+
+
+def test_a_wave_against_a_line_bends_as_with_four_times_the_samples() -> None:
+    check_waves(range(20))
+
+
+@pytest.mark.slow
+def test_many_waves_against_a_line_bend_as_with_four_times_the_samples() -> None:
+    check_waves(range(20, 320))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -11,8 +12,10 @@ from .directrix import Directrix, sample_directrix
 
 if TYPE_CHECKING:
     from wrinkle_cad.strip.curve.sampling import Samples
+    from wrinkle_cad.strip.triangulation import Triangulation
 
 Floats = NDArray[np.float64]
+Search = Callable[[Floats, Floats], "Triangulation"]
 
 
 def sample_rails(
@@ -57,3 +60,29 @@ def samples_against(
     if directrix.is_polyline:
         return samples
     return sample_against(directrix.point_at, samples, other, tolerance)
+
+
+def search_between(
+    rails: tuple[Directrix | None, Directrix | None],
+    samples: tuple[Samples, Samples],
+    tolerance: float,
+    search: Search,
+) -> tuple[Triangulation, tuple[Samples, Samples]]:
+    """Returns the best strip between two rails, and the samples it was found between.
+
+    These are the given ones, and more if the strip would fold back on itself without them.
+
+    Args:
+        rails: the rails; None for one that is to keep its samples, as one given as points does.
+        samples: of both rails.
+        tolerance: mm; how far a chord may lie from its curve.
+        search: the best triangulation between two rows of points, (m, 3) and (n, 3) float64, mm.
+
+    Raises:
+        InputError: what ``search`` refuses.
+    """
+    from wrinkle_cad.strip.partners import without_fold_backs
+
+    found = search(samples[0].points, samples[1].points)
+    p, q = (None if rail is None or rail.is_polyline else rail.point_at for rail in rails)
+    return without_fold_backs(found, samples, (p, q), tolerance, search)

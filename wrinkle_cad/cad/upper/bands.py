@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import partial
 from typing import Protocol
 
 import numpy as np
@@ -20,7 +21,7 @@ from wrinkle_cad import settings
 from wrinkle_cad.cad.faces.shell import build_shell
 from wrinkle_cad.cad.kernel.curves import edge_ends
 from wrinkle_cad.cad.rail.directrix import Directrix, make_directrix, sample_directrix
-from wrinkle_cad.cad.rail.joint_samples import samples_against
+from wrinkle_cad.cad.rail.joint_samples import samples_against, search_between
 from wrinkle_cad.errors import InputError
 from wrinkle_cad.strip.curve.nearest import nearest_on_polyline
 from wrinkle_cad.strip.curve.polyline import segment_lengths
@@ -125,11 +126,13 @@ def make_band(
     side_samples = samples_against(side, alone, samples.points, tolerance)
     rails = (profile, side) if i else (side, profile)
     sampled = (samples, side_samples) if i else (side_samples, samples)
-    triangulation = triangulate(
-        *(one.points for one in sampled),
+    search = partial(
+        triangulate,
         planarity=settings.planarity_from(tolerance),
         price=settings.PRICE if price is None else price,
     )
+    free = (None, side) if i else (side, None)
+    triangulation, sampled = search_between(free, sampled, tolerance, search)
     _check_folds(triangulation, opening, i, width)
     shell = build_shell(triangulation, *rails, *sampled, settings.SURFACE)
     return Band(name, *rails, *sampled, triangulation, shell, width)

@@ -77,7 +77,32 @@ def sample_against(
     >>> sample_against(line, alone, tab, 0.05).parameters.tolist()
     [0.0, 50.0, 60.0, 70.0, 120.0]
     """
-    places = _wanted_places(samples.points, other)
+    return with_places(point_at, samples, _wanted_places(samples.points, other), tolerance)
+
+
+def with_places(
+    point_at: PointAt, samples: Samples, places: FloatArray, tolerance: float
+) -> Samples:
+    """Adds vertices to a rail at given lengths along its chords.
+
+    Args:
+        point_at: the rail, from (k,) float64 parameters to (k, 3) points in mm.
+        samples: of the rail.
+        places: (r,) float64, mm along the chords from the start, none at a vertex: the new vertices
+            are the curve points whose feet on their chords stand there.
+        tolerance: mm; largest distance from a curve point to its chord, as for ``samples``.
+
+    Returns:
+        The given vertices and the new ones, and more where a part of a chord would break the
+        tolerance; the given object if there are no places.
+
+    Example:
+        >>> def parabola(t):
+        ...     return np.stack((t, t * t, 0 * t), axis=1)
+        >>> chord = Samples(np.array([0.0, 1.0]), parabola(np.array([0.0, 1.0])))
+        >>> with_places(parabola, chord, np.array([np.sqrt(0.5)]), 1.0).parameters.round(3).tolist()
+        [0.0, 0.618, 1.0]
+    """
     if not len(places):
         return samples
     chord, share = _chords_of(samples.points, places)
