@@ -6,12 +6,19 @@ import sys
 from collections.abc import Sequence
 from pathlib import Path
 
-from wrinkle_cad.cad.exchange.choose import choose_inputs
-from wrinkle_cad.cad.exchange.read import read_cad
-from wrinkle_cad.cad.exchange.shapes import Part
-from wrinkle_cad.cad.exchange.write import write_step
-from wrinkle_cad.job.job import make_job
-from wrinkle_cad.job.wrinkled_upper import WrinkledUpper, wrinkle_upper
+from wrinkle_cad import (
+    NotchRule,
+    Part,
+    PieceSettings,
+    WrinkledUpper,
+    choose_inputs,
+    make_job,
+    pattern_of_strips,
+    plot_pattern,
+    read_cad,
+    wrinkle_upper,
+    write_step,
+)
 
 BODY = (0.60, 0.38, 0.22)
 WRINKLE = (0.74, 0.51, 0.31)
@@ -42,11 +49,6 @@ def draw_pattern(folder: Path) -> None:
 
     mpl.use("Agg")
     import matplotlib.pyplot as plt
-
-    from wrinkle_cad import PieceSettings
-    from wrinkle_cad.pattern.piece.options import NotchRule
-    from wrinkle_cad.report.figures import plot_pattern
-    from wrinkle_cad.wrinkle.cut_pattern import pattern_of_strips
 
     result = stitched_upper(folder)
     rule = NotchRule(count=5)

@@ -6,14 +6,13 @@ from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
+from build123d import Compound, Face
 from numpy.typing import NDArray
 from OCP.BRep import BRep_Tool
 from OCP.BRepMesh import BRepMesh_IncrementalMesh
 from OCP.TopAbs import TopAbs_REVERSED
 from OCP.TopLoc import TopLoc_Location
 from OCP.TopoDS import TopoDS_Face
-
-from wrinkle_cad.cad.kernel.topology import make_compound
 
 VIEWS = ((32.0, -58.0), (38.0, 62.0))
 """Elevation and azimuth in degrees: from the outer and from the inner side, over the toe."""
@@ -71,9 +70,8 @@ def draw(
     import matplotlib.pyplot as plt
     from mpl_toolkits.mplot3d.art3d import Poly3DCollection
 
-    BRepMesh_IncrementalMesh(
-        make_compound([face for faces, _ in parts for face in faces]), CHORD, False, 0.08, False
-    )
+    whole = Compound([Face(face) for faces, _ in parts for face in faces])
+    BRepMesh_IncrementalMesh(whole.wrapped, CHORD, False, 0.08, False)
     meshed = [
         (np.concatenate([face_triangles(face) for face in faces]), color)
         for faces, color in parts

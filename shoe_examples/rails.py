@@ -3,15 +3,14 @@
 from __future__ import annotations
 
 import numpy as np
+from build123d import Compound, Vertex
 from numpy.typing import NDArray
 from OCP.BRepExtrema import BRepExtrema_DistShapeShape
 from OCP.gp import gp_Dir, gp_Lin, gp_Pnt
 from OCP.IntCurvesFace import IntCurvesFace_ShapeIntersector
 from OCP.TopoDS import TopoDS_Edge, TopoDS_Shape
 
-from wrinkle_cad.cad.kernel.measures import length_of
-from wrinkle_cad.cad.kernel.topology import free_edges, make_vertex
-from wrinkle_cad.cad.upper.smooth import smooth_edge
+from wrinkle_cad import smooth_edge
 
 AXIS_HEIGHT = 2.0
 """mm above the feather edge; rays that draw a rail start on this axis."""
@@ -66,10 +65,10 @@ def vamp_rail(
 
 def feather_rail(upper: TopoDS_Shape, x: float, *, skew: float = 0.0) -> TopoDS_Edge:
     """Returns a rail that starts and ends on the feather edge, the longest border of the upper."""
-    feather = max(free_edges(upper), key=length_of)
+    feather = max(Compound.cast(upper).edges(), key=lambda edge: float(edge.length)).wrapped
     points = rail_points(upper, x, skew=skew, reach_deg=(-88.0, 88.0))
     ends = []
     for point in (points[0], points[-1]):
-        nearest = BRepExtrema_DistShapeShape(make_vertex(point), feather).PointOnShape2(1)
+        nearest = BRepExtrema_DistShapeShape(Vertex(*point).wrapped, feather).PointOnShape2(1)
         ends.append([nearest.X(), nearest.Y(), nearest.Z()])
     return smooth_edge(np.vstack((ends[:1], points, ends[1:])))

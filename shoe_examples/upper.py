@@ -14,10 +14,11 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 from OCP.BRepBuilderAPI import BRepBuilderAPI_MakeFace, BRepBuilderAPI_Sewing
+from OCP.Geom import Geom_BSplineSurface
 from OCP.TopoDS import TopoDS_Face, TopoDS_Shape
 from scipy.interpolate import CubicSpline, make_interp_spline
 
-from wrinkle_cad.cad.kernel.splines import Geom_BSplineSurface, make_surface
+from wrinkle_cad import make_surface
 
 SIZE = 42
 CONFUSION = 1e-7

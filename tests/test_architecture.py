@@ -148,6 +148,16 @@ def lines_for_type_checkers(path: Path) -> set[int]:
     }
 
 
+def test_examples_use_public_names_only() -> None:
+    faults = [
+        f"{path}: {node.module}"
+        for path in sorted((PACKAGE.parent / "shoe_examples").rglob("*.py"))
+        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8")))
+        if isinstance(node, ast.ImportFrom) and str(node.module).startswith("wrinkle_cad.")
+    ]
+    assert not faults, "\n".join(faults)
+
+
 def test_strip_and_pattern_are_of_use_without_cad_and_terminal() -> None:
     faults = [
         f"{path}:{line} imports {module}"

@@ -15,10 +15,15 @@ __version__ = VERSION
 # What is found lazily below, for type checkers and editors; a test holds the two together.
 if TYPE_CHECKING:
     from .batch.executor import run_batch as run_batch
+    from .cad.exchange.choose import choose_inputs as choose_inputs
     from .cad.exchange.read import read_cad as read_cad
+    from .cad.exchange.shapes import Part as Part
+    from .cad.exchange.write import write_step as write_step
+    from .cad.kernel.splines import make_surface as make_surface
     from .cad.upper.carve import carve as carve
     from .cad.upper.opening import Opening as Opening
     from .cad.upper.profiles import wrinkle_profiles as wrinkle_profiles
+    from .cad.upper.smooth import smooth_edge as smooth_edge
     from .cad.upper.stitch import Stitched as Stitched
     from .cad.upper.stitch import stitch as stitch
     from .errors import CadError as CadError
@@ -33,8 +38,13 @@ if TYPE_CHECKING:
     from .job.outcome import JobDone as JobDone
     from .job.outcome import JobFailed as JobFailed
     from .job.workflow import run_job as run_job
+    from .job.wrinkled_upper import WrinkledUpper as WrinkledUpper
+    from .job.wrinkled_upper import wrinkle_upper as wrinkle_upper
     from .pattern.piece.options import NotchRule as NotchRule
     from .pattern.piece.options import PieceSettings as PieceSettings
+    from .report.compare import Comparison as Comparison
+    from .report.compare import compare as compare
+    from .report.figures import plot_pattern as plot_pattern
     from .wrinkle.cut_pattern import Pattern as Pattern
     from .wrinkle.cut_pattern import pattern_of_strips as pattern_of_strips
     from .wrinkle.strip_report import StripReport as StripReport
@@ -46,6 +56,8 @@ _MODULE_OF: Final = {
     "Pattern": "wrinkle.cut_pattern",
     "PieceSettings": "pattern.piece.options",
     "read_cad": "cad.exchange.read",
+    "Part": "cad.exchange.shapes",
+    "write_step": "cad.exchange.write",
     "carve": "cad.upper.carve",
     "Opening": "cad.upper.opening",
     "wrinkle_profiles": "cad.upper.profiles",
@@ -64,6 +76,14 @@ _MODULE_OF: Final = {
     "JobError": "errors",
     "CadError": "errors",
     "ExportError": "errors",
+    "choose_inputs": "cad.exchange.choose",
+    "wrinkle_upper": "job.wrinkled_upper",
+    "WrinkledUpper": "job.wrinkled_upper",
+    "plot_pattern": "report.figures",
+    "compare": "report.compare",
+    "Comparison": "report.compare",
+    "make_surface": "cad.kernel.splines",
+    "smooth_edge": "cad.upper.smooth",
     "NotchRule": "pattern.piece.options",
     "pattern_of_strips": "wrinkle.cut_pattern",
 }

@@ -15,7 +15,14 @@ Severity = Literal["info", "warning", "error"]
 
 @dataclass(frozen=True, slots=True)
 class Finding:
-    """What a step noticed without stopping: it goes into the result, not to the screen."""
+    """What a step noticed without stopping: it goes into the result, not to the screen.
+
+    Example:
+        >>> from wrinkle_cad import WrinkleStrip
+        >>> p, q = [[0, 0, 0], [50, 0, 9], [100, 0, 0]], [[0, 30, 0], [50, 30, 9], [100, 30, 0]]
+        >>> [finding.code for finding in WrinkleStrip(p, q[::-1]).findings]
+        ['rails-turned-alike']
+    """
 
     code: str
     """Short kebab-case key, stable between versions ("rails-turned-alike")."""
@@ -26,19 +33,52 @@ class Finding:
 
 
 class WrinkleError(Exception):
-    """Base of every error that this package raises on purpose."""
+    """Base of every error that this package raises on purpose.
+
+    Example:
+        >>> from wrinkle_cad import WrinkleStrip
+        >>> try:
+        ...     WrinkleStrip([[0, 0, 0]], [[0, 1, 0], [9, 1, 0]], tolerance=-1)
+        ... except WrinkleError as error:
+        ...     print(error)
+        tolerance cannot be -1 mm: give a number from 1e-09 to 1000 mm.
+    """
 
 
 class WrinkleWarning(UserWarning):
-    """Something about a strip is unsure; it says what its findings say, once for each strip."""
+    """Something about a strip is unsure; it says what its findings say, once for each strip.
+
+    Example:
+        >>> import warnings
+        >>> from wrinkle_cad import WrinkleStrip
+        >>> p, q = [[0, 0, 0], [50, 0, 9], [100, 0, 0]], [[0, 30, 0], [50, 30, 9], [100, 30, 0]]
+        >>> with warnings.catch_warnings(record=True) as caught:
+        ...     warnings.simplefilter("always", WrinkleWarning)
+        ...     strip = WrinkleStrip(p, q[::-1])
+        >>> any(warning.category is WrinkleWarning for warning in caught)
+        True
+    """
 
 
 class InputError(WrinkleError, ValueError):
-    """Something handed in cannot be used: a curve, an array, a file, an option."""
+    """Something handed in cannot be used: a curve, an array, a file, an option.
+
+    Example:
+        >>> issubclass(InputError, ValueError)
+        True
+    """
 
 
 class JobError(InputError):
-    """The settings of a job contradict each other or do not fit the input file."""
+    """The settings of a job contradict each other or do not fit the input file.
+
+    Example:
+        >>> from pathlib import Path
+        >>> from wrinkle_cad import Job
+        >>> Job(input=Path("shoe.step"), tolerance=0)
+        Traceback (most recent call last):
+        wrinkle_cad.errors.JobError: tolerance cannot be 0 mm: give a number from 1e-09 to 1000 mm.
+    """
 
 
 class CadError(WrinkleError):
@@ -47,6 +87,11 @@ class CadError(WrinkleError):
     Args:
         step: what was being done, in words a user knows ("sew the strip to the body").
         message: what was found, what is allowed, what to do; it goes on from a colon.
+
+    Example:
+        >>> error = CadError("sew the strip to the body", "they are 3 mm apart. Move the rails.")
+        >>> str(error)
+        'Cannot sew the strip to the body: they are 3 mm apart. Move the rails.'
     """
 
     def __init__(self, step: str, message: str) -> None:
@@ -65,6 +110,15 @@ class ExportError(WrinkleError):
         path: the file that was to be written.
         format: its format ("STEP", "STL", "DXF", ...).
         message: what was found, what to do; it goes on from a colon.
+
+    Example:
+        >>> from wrinkle_cad import WrinkleStrip
+        >>> p, q = [[0, 0, 0], [50, 0, 9], [100, 0, 0]], [[0, 30, 0], [50, 30, 9], [100, 30, 0]]
+        >>> try:
+        ...     WrinkleStrip(p, q).export_stl("no such folder/tent.stl")
+        ... except ExportError as error:
+        ...     print(error.path.name, error.format)
+        tent.stl STL
     """
 
     def __init__(self, path: Path, format: str, message: str) -> None:  # noqa: A002 - the field's word

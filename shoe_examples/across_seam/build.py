@@ -11,7 +11,7 @@ from pathlib import Path
 from shoe_examples.example import main
 from shoe_examples.rails import vamp_rail
 from shoe_examples.upper import sewn, upper_panels
-from wrinkle_cad.cad.exchange.shapes import Part
+from wrinkle_cad import Part
 
 LEATHER = (0.60, 0.38, 0.22)
 

@@ -12,8 +12,7 @@ from pathlib import Path
 import matplotlib as mpl
 from build123d import import_step
 
-from wrinkle_cad import WrinkleStrip
-from wrinkle_cad.report.compare import Comparison, compare
+from wrinkle_cad import Comparison, WrinkleStrip, compare
 
 HERE = Path(__file__).parent
 NAMES = ("example_1", "example_2", "example_3")

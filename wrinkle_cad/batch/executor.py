@@ -60,6 +60,14 @@ def run_batch(
     Raises:
         InputError: two jobs write the same files, a limit is out of its range or was given
             together with an executor.
+
+    Example:
+        >>> from concurrent.futures import ThreadPoolExecutor
+        >>> from wrinkle_cad import Job, JobFailed
+        >>> with ThreadPoolExecutor() as pool:
+        ...     outcomes = run_batch([Job(input=Path("gone.step"))], executor=pool)
+        >>> isinstance(outcomes[0], JobFailed)
+        True
     """
     todo = tuple(jobs)
     _check_distinct(todo)

@@ -40,6 +40,11 @@ class Job(
 
     Inherits the settings of all that a run does, so that every option is one keyword, one attribute
     and one key of a job file, and is stated in one class only.
+
+    Example:
+        >>> job = Job(input=Path("shoe.step"), waves=5, height=(2, 3), seam_allowance=6)
+        >>> job.name, job.waves, job.seam_allowance
+        ('shoe', (5.0, 5.0), (6.0, 6.0, 6.0, 6.0))
     """
 
     input: Path = field(metadata=option("STEP, IGES or BREP file", flag=None))
@@ -87,6 +92,11 @@ def make_job(
 
     Raises:
         JobError: the TOML file cannot be read, or a setting is unknown or out of range.
+
+    Example:
+        >>> _ = Path("job.toml").write_text("tolerance = 0.1")
+        >>> make_job(Path("shoe.step"), {"max_fold_deg": 45}, Path("job.toml")).tolerance
+        0.1
     """
     merged = read_job_toml(toml_path) if toml_path is not None else {}
     merged.update({key: value for key, value in (keywords or {}).items() if value is not None})

@@ -17,7 +17,17 @@ Progress = Callable[[str, int, int], None]
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class JobDone:
-    """A job whose outputs are all written."""
+    """A job whose outputs are all written.
+
+    Example:
+        >>> from wrinkle_cad import Job, Part, run_job, write_step
+        >>> from build123d import Edge
+        >>> p, q = Edge.make_line((0, 0), (90, 0)), Edge.make_line((0, 20), (90, 30))
+        >>> write_step(Path("lace.step"), [Part(p.wrapped, "P"), Part(q.wrapped, "Q")])
+        >>> done = run_job(Job(input=Path("lace.step")))
+        >>> done.summary["strips"][0]["state"], done.missed_limits
+        ('developable', ())
+    """
 
     job: Job
     """The settings that were used."""
@@ -32,10 +42,21 @@ class JobDone:
     missed_limits: tuple[str, ...] = ()
     """One line for each limit that the result misses; the outputs are written all the same."""
 
+    def __repr__(self) -> str:
+        names = ", ".join(path.name for path in self.outputs)
+        return f"JobDone({self.job.name!r}: {names})"
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class JobFailed:
-    """A job that wrote nothing."""
+    """A job that wrote nothing.
+
+    Example:
+        >>> from wrinkle_cad import run_job
+        >>> failed = run_job(Job(input=Path("gone.step")))
+        >>> failed.phase, failed.error
+        ('read', 'InputError')
+    """
 
     job: Job
     """The settings that were used."""
@@ -49,3 +70,6 @@ class JobFailed:
     """Wall-clock seconds by phase."""
     trace: str = ""
     """The traceback, for a log or --debug."""
+
+    def __repr__(self) -> str:
+        return f"JobFailed({self.job.name!r} in phase {self.phase!r}: {self.message[:80]})"

@@ -38,6 +38,17 @@ def run_job(job: Job, *, progress: Progress | None = None) -> JobDone | JobFaile
 
     Returns:
         What was made, or why nothing was: bad input does not raise.
+
+    Example:
+        >>> from pathlib import Path
+        >>> from wrinkle_cad import Job, Part, write_step
+        >>> from build123d import Edge
+        >>> p, q = Edge.make_line((0, 0), (90, 0)), Edge.make_line((0, 20), (90, 30))
+        >>> write_step(Path("lace.step"), [Part(p.wrapped, "P"), Part(q.wrapped, "Q")])
+        >>> run_job(Job(input=Path("lace.step"), output_dir=Path("out")))
+        JobDone('lace': lace.step, lace.stl, lace.dxf, lace.json, lace.html)
+        >>> type(run_job(Job(input=Path("gone.step")))).__name__
+        'JobFailed'
     """
     clock = PhaseClock(progress, len(_PHASES))
     try:

@@ -25,7 +25,19 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class WrinkledUpper:
-    """An upper with its wrinkles stitched in."""
+    """An upper with its wrinkles stitched in.
+
+    Example:
+        >>> from pathlib import Path
+        >>> from wrinkle_cad import Job, Part, choose_inputs, read_cad, write_step
+        >>> from build123d import Edge, Face
+        >>> rails = Edge.make_line((-40, -8), (40, -8)), Edge.make_line((-40, 8), (40, 8))
+        >>> shapes = zip([Face.make_rect(100, 60), *rails], ["upper", "P", "Q"], strict=True)
+        >>> write_step(Path("shoe.step"), [Part(shape.wrapped, name) for shape, name in shapes])
+        >>> job = Job(input=Path("shoe.step"), waves=3, height=2)
+        >>> wrinkle_upper(job, choose_inputs(read_cad(job.input))).stitched.report.free_edges_after
+        4
+    """
 
     given: NamedShape
     """The upper as the file has it."""
@@ -104,6 +116,18 @@ def wrinkle_upper(job: Job, chosen: Chosen) -> WrinkledUpper:
     Raises:
         InputError: a rail or a profile does not fit the upper.
         CadError: the parts do not become one valid shell.
+
+    Example:
+        >>> from pathlib import Path
+        >>> from wrinkle_cad import Job, Part, choose_inputs, read_cad, write_step
+        >>> from build123d import Edge, Face
+        >>> rails = Edge.make_line((-40, -8), (40, -8)), Edge.make_line((-40, 8), (40, 8))
+        >>> shapes = zip([Face.make_rect(100, 60), *rails], ["upper", "P", "Q"], strict=True)
+        >>> write_step(Path("shoe.step"), [Part(shape.wrapped, name) for shape, name in shapes])
+        >>> job = Job(input=Path("shoe.step"), waves=3, height=2)
+        >>> wrinkled = wrinkle_upper(job, choose_inputs(read_cad(job.input)))
+        >>> [strip.name for strip in (*wrinkled.strips, *wrinkled.bands)]
+        ['shoe', 'shoe band P', 'shoe band Q']
     """
     from wrinkle_cad.cad.upper.stitch import stitch
 

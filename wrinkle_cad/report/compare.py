@@ -52,7 +52,14 @@ _BEST: Final[tuple[tuple[str, Callable[..., Any]], ...]] = (
 
 @dataclass(frozen=True, slots=True)
 class Comparison:
-    """What one method makes of a strip."""
+    """What one method makes of a strip.
+
+    Example:
+        >>> p, q = [[0, 0, 0], [50, 0, 9], [100, 0, 0]], [[0, 30, 0], [50, 30, 9], [100, 30, 0]]
+        >>> best = compare(p, q)[1]
+        >>> best.valid_bridges, best.bridges
+        (3, 3)
+    """
 
     method: str
     """The paper's name of it."""
@@ -96,6 +103,11 @@ def compare(
 
     Raises:
         InputError: a rail or an option cannot be used.
+
+    Example:
+        >>> p, q = [[0, 0, 0], [50, 0, 9], [100, 0, 0]], [[0, 30, 0], [50, 30, 9], [100, 30, 0]]
+        >>> [row.method for row in compare(p, q)]
+        ['LODT+LMBT', 'GODT+GMBT', 'LMBT', 'GMBT', 'GMAT']
     """
     return tuple(
         _row(name, meaning, *_timed(p, q, search, criteria, energy, planarity))

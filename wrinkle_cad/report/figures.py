@@ -104,6 +104,14 @@ def plot_pattern(ax: Axes, pieces: Sequence[PatternPiece]) -> Axes:
 
     Returns:
         The same axes.
+
+    Example:
+        >>> from matplotlib.figure import Figure
+        >>> from wrinkle_cad import WrinkleStrip
+        >>> p, q = [[0, 0, 0], [50, 0, 9], [100, 0, 0]], [[0, 30, 0], [50, 30, 9], [100, 30, 0]]
+        >>> axes = Figure().add_subplot()
+        >>> plot_pattern(axes, WrinkleStrip(p, q, name="tent").pattern().pieces) is axes
+        True
     """
     top = 0.0
     for piece in pieces:

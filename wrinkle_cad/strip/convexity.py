@@ -82,6 +82,11 @@ def validity_matrix(p: npt.ArrayLike, q: npt.ArrayLike, *, planarity: float | No
     Raises:
         InputError: a rail is no (k, 3) array of finite points, both are single points, or
             planarity is negative.
+
+    Example:
+        >>> bent = [[0, 0, 0], [1, 0, 1], [2, 0, 0]], [[0, 1, 0], [1, 1, 1], [2, 1, 0]]
+        >>> validity_matrix(*bent).astype(int).tolist()
+        [[1, 1, 1], [1, 1, 1], [1, 1, 1]]
     """
     p, q = checked_rails(p, q)
     limit = checked_planarity(p, q, planarity)

@@ -29,7 +29,13 @@ _LEAF: Final = 4
 
 @dataclass(frozen=True, slots=True, eq=False)
 class SelfCrossings:
-    """Triangles of a strip that pass through others; every array is read-only."""
+    """Triangles of a strip that pass through others; every array is read-only.
+
+    Example:
+        >>> from wrinkle_cad.strip import triangulate
+        >>> self_crossings(triangulate([[0, 0, 0], [1, 0, 0]], [[0, 1, 0], [1, 1, 0]])).count
+        0
+    """
 
     triangles: Indices
     """(k,) int64, increasing; triangles that cut another one."""
@@ -66,8 +72,8 @@ def self_crossings(triangulation: Triangulation) -> SelfCrossings:
         >>> t = 2 * s - 1
         >>> loop = np.column_stack((60 * t**3 - 40 * t, 0 * s, 30 * (1 - t * t)))
         >>> crossings = self_crossings(triangulate(loop, loop + [0.0, 15.0, 0.0]))
-        >>> crossings.points[:, 0].round(3).tolist()
-        [-0.0, 0.0]
+        >>> bool(crossings.count), bool(np.abs(crossings.points[:, 0]).max() < 1e-6)
+        (True, True)
     """
     points = np.ascontiguousarray(np.vstack((triangulation.p, triangulation.q)))
     size = float(np.ptp(points, axis=0).max())

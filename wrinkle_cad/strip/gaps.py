@@ -44,7 +44,16 @@ ADVICE: Final[dict[Kind, str]] = {
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Gap:
-    """A run of invalid interior bridges between valid ones."""
+    """A run of invalid interior bridges between valid ones.
+
+    Example:
+        >>> from wrinkle_cad.strip import triangulate
+        >>> x = np.linspace(0.0, 40.0, 9)
+        >>> p = np.stack((x, 0 * x, 2 * np.sin(x / 4)), axis=1)
+        >>> q = np.stack((x, 0 * x + 15, 2 * np.cos(x / 3)), axis=1)
+        >>> [(gap.kind, gap.first, gap.last) for gap in find_gaps(triangulate(p, q))]
+        [('inflection', 7, 7), ('inflection', 12, 12)]
+    """
 
     first: int
     """Number of its first bridge on the path."""
@@ -69,7 +78,14 @@ class Gap:
 
 
 def find_gaps(triangulation: Triangulation) -> tuple[Gap, ...]:
-    """Returns the runs of invalid interior bridges, in order along the strip."""
+    """Returns the runs of invalid interior bridges, in order along the strip.
+
+    Example:
+        >>> from wrinkle_cad.strip import triangulate
+        >>> flat = triangulate([[0, 0, 0], [1, 0, 0], [2, 0, 0]], [[0, 1, 0], [1, 1, 0], [2, 1, 0]])
+        >>> find_gaps(flat)
+        ()
+    """
     invalid = ~triangulation.valid
     invalid[[0, -1]] = False
     edges = np.flatnonzero(np.diff(invalid)) + 1
@@ -89,6 +105,12 @@ def covered_lengths(triangulation: Triangulation, marked: npt.ArrayLike) -> tupl
     Args:
         triangulation: the strip.
         marked: (m+n-1,) bool; for instance `~triangulation.valid & ~triangulation.inflection`.
+
+    Example:
+        >>> from wrinkle_cad.strip import triangulate
+        >>> flat = triangulate([[0, 0, 0], [1, 0, 0], [2, 0, 0]], [[0, 1, 0], [1, 1, 0], [3, 1, 0]])
+        >>> covered_lengths(flat, flat.valid)
+        (2.0, 3.0)
     """
     chosen = np.asarray(marked, dtype=np.bool_)
     p_share, q_share = (_shares(triangulation, rail) for rail in (0, 1))

@@ -52,6 +52,10 @@ class Triangulation:
     last. Counts are of interior bridges. A closed strip has m+n triangles and m+n+1 bridges, of
     which the last is the first again, (m, n) further; all m+n are interior, so `fold` and
     `bending_at` begin with the first one, at the seam.
+
+    Example:
+        >>> triangulate([[0, 0, 0], [1, 0, 1], [2, 0, 0]], [[0, 1, 0], [1, 1, 1], [2, 1, 0]])
+        Triangulation(3 x 3 samples, 0 of 3 bridges not locally convex)
     """
 
     p: Floats
@@ -107,6 +111,12 @@ class Triangulation:
     samples, of that side thinned to 250; None without a price."""
     is_closed: bool = False
     """Whether the last bridge is the first one again."""
+
+    def __repr__(self) -> str:
+        return (
+            f"Triangulation({len(self.p)} x {len(self.q)} samples, {self.invalid_count} of"
+            f" {self.interior_count} bridges not locally convex)"
+        )
 
     @property
     def _interior(self) -> slice:

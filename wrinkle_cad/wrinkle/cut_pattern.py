@@ -39,12 +39,24 @@ class FlatStrip(SampledStrip, Protocol):
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Pattern:
-    """Flat pieces at one scale, in mm."""
+    """Flat pieces at one scale, in mm.
+
+    Example:
+        >>> from wrinkle_cad import WrinkleStrip
+        >>> p, q = [[0, 0, 0], [50, 0, 9], [100, 0, 0]], [[0, 30, 0], [50, 30, 9], [100, 30, 0]]
+        >>> WrinkleStrip(p, q, name="tent").pattern(seam_allowance=(6, 6, 6, 6), hand="left")
+        Pattern(2 pieces: tent LEFT, tent RIGHT)
+    """
 
     pieces: tuple[PatternPiece, ...]
     """Laid side by side, none overlapping."""
     strip_index: tuple[int, ...]
     """For each piece the index of the strip that it belongs to."""
+
+    def __repr__(self) -> str:
+        names = dict.fromkeys(piece.name for piece in self.pieces)
+        more = ", ..." if len(names) > 3 else ""
+        return f"Pattern({len(self.pieces)} pieces: {', '.join([*names][:3])}{more})"
 
     def pieces_of(self, strip_index: int) -> tuple[PatternPiece, ...]:
         """The pieces of one strip, by its index."""
@@ -175,6 +187,13 @@ def pattern_of_strips(
     Raises:
         InputError: a strip covers itself when flat and is not to be split, or a setting does not
             fit it.
+
+    Example:
+        >>> from wrinkle_cad import WrinkleStrip
+        >>> p, q = [[0, 0, 0], [50, 0, 9], [100, 0, 0]], [[0, 30, 0], [50, 30, 9], [100, 30, 0]]
+        >>> strips = [WrinkleStrip(p, q, name="tent"), WrinkleStrip(p, q, name="tent 2")]
+        >>> pattern_of_strips(strips, PieceSettings(notches=2))
+        Pattern(2 pieces: tent, tent 2)
     """
     given = list(strips)
     over = tuple(turned_over) or (False,) * len(given)

@@ -47,7 +47,14 @@ class CreaseReport:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class StripReport:
-    """What a strip is, in numbers; bridges are counted between the first and the last."""
+    """What a strip is, in numbers; bridges are counted between the first and the last.
+
+    Example:
+        >>> from wrinkle_cad import WrinkleStrip
+        >>> p, q = [[0, 0, 0], [50, 0, 9], [100, 0, 0]], [[0, 30, 0], [50, 30, 9], [100, 30, 0]]
+        >>> WrinkleStrip(p, q, name="tent").report
+        StripReport('tent', creased, 3048.2 mm2)
+    """
 
     name: str
     """The strip's name."""
@@ -115,6 +122,9 @@ class StripReport:
     """Whether the flat pattern covers itself."""
     gaps: tuple[Gap, ...]
     """The runs of invalid bridges."""
+
+    def __repr__(self) -> str:
+        return f"StripReport({self.name!r}, {self.state}, {self.area_3d_mm2:.1f} mm2)"
 
     @property
     def is_developable(self) -> bool:

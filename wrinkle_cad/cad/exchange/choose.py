@@ -59,6 +59,17 @@ def choose_inputs(
     Raises:
         InputError: there is no curve, no or more than one possible choice, or a name or index that
             the file does not have; the message lists the candidates with their measures.
+
+    Example:
+        >>> from pathlib import Path
+        >>> from wrinkle_cad import Part, read_cad, write_step
+        >>> from build123d import Edge, Face
+        >>> rails = Edge.make_line((-40, -8), (40, -8)), Edge.make_line((-40, 8), (40, 8))
+        >>> shapes = zip([Face.make_rect(100, 60), *rails], ["upper", "P", "Q"], strict=True)
+        >>> write_step(Path("shoe.step"), [Part(shape.wrapped, name) for shape, name in shapes])
+        >>> chosen = choose_inputs(read_cad(Path("shoe.step")))
+        >>> [strip.p.name for strip in chosen.strips], chosen.upper.name
+        (['P'], 'upper')
     """
     if p is None and q is None:
         strips, reasons = _named_strips(cad_file)

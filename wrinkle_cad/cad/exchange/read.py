@@ -36,6 +36,14 @@ def read_cad(
         InputError: the file cannot be read; the message names the true cause. Also if ``unit``
             contradicts what the file declares.
         CadError: the kernel cannot be loaded.
+
+    Example:
+        >>> from build123d import Edge
+        >>> from wrinkle_cad import Part, write_step
+        >>> p = Edge.make_line((0, 0), (90, 0))
+        >>> write_step(Path("rail.step"), [Part(p.wrapped, "P")])
+        >>> read_cad(Path("rail.step")).shapes[0].measure
+        90.0
     """
     if unit is not None and unit not in MM_PER_UNIT:
         raise InputError(f"The unit is {unit!r}. Choose one of {', '.join(MM_PER_UNIT)}.")

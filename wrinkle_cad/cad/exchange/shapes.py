@@ -101,6 +101,9 @@ class CadFile:
     is_compressed: bool = False
     """Whether the file was compressed with gzip."""
 
+    def __repr__(self) -> str:
+        return f"CadFile({self.path.name!r}, {self.format}, {self.unit}, {len(self.shapes)} shapes)"
+
     def curves(self) -> tuple[NamedShape, ...]:
         """Returns the free edges and wires."""
         return tuple(shape for shape in self.shapes if shape.is_curve)
@@ -112,7 +115,13 @@ class CadFile:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Part:
-    """One shape to be written, with its name and color."""
+    """One shape to be written, with its name and color.
+
+    Example:
+        >>> from build123d import Edge
+        >>> Part(Edge.make_line((0, 0), (90, 0)).wrapped, "P").name
+        'P'
+    """
 
     shape: TopoDS_Shape
     """World coordinates, mm; an edge, wire, face, shell, solid, vertex or compound of one kind."""

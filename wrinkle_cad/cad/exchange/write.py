@@ -68,6 +68,14 @@ def write_step(
     Raises:
         ExportError: the kernel cannot write a shape, or the file cannot be written; what stood
             there before is untouched.
+
+    Example:
+        >>> from build123d import Edge
+        >>> from wrinkle_cad import Part, read_cad
+        >>> p = Edge.make_line((0, 0), (90, 0))
+        >>> write_step(Path("rail.step"), [Part(p.wrapped, "P")])
+        >>> [str(shape) for shape in read_cad(Path("rail.step")).shapes]
+        ["[1] 'P' edge 90 mm"]
     """
     header = Header(path.name, timestamp)
     try:

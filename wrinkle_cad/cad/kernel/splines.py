@@ -93,7 +93,14 @@ def make_surface(
     degrees: tuple[int, int],
     weights: ArrayLike | None = None,
 ) -> Geom_BSplineSurface:
-    """Returns a clamped B-spline surface: poles (k, l, 3) mm, weights (k, l), the rest (u, v)."""
+    """Returns a clamped B-spline surface: poles (k, l, 3) mm, weights (k, l), the rest (u, v).
+
+    Example:
+        >>> corners = [[[0, 0, 0], [0, 9, 0]], [[9, 0, 0], [9, 9, 3]]]
+        >>> surface = make_surface(corners, ((0, 1), (0, 1)), ((2, 2), (2, 2)), (1, 1))
+        >>> surface.Value(0.5, 0.5).Z()
+        0.75
+    """
     grid = np.asarray(poles, dtype=np.float64)
     points = PointGrid(1, grid.shape[0], 1, grid.shape[1])
     for i, j in np.ndindex(grid.shape[0], grid.shape[1]):

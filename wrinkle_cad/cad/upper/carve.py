@@ -61,6 +61,14 @@ def carve(
         InputError: rails that cross, enclose no area or are too far from the upper; an opening that
             cuts the upper in two; values out of range.
         CadError: the kernel cannot split the upper, or areas do not add up.
+
+    Example:
+        >>> from build123d import Edge, Face
+        >>> upper = Face.make_rect(100, 60)
+        >>> p, q = Edge.make_line((-40, -8), (40, -8)), Edge.make_line((-40, 8), (40, 8))
+        >>> opening = carve(upper, p, q, margin=2)
+        >>> opening
+        Opening(body 4469.8 mm2, removed 1530.2 mm2)
     """
     _check_numbers(margin, fade, limit, join)
     first, second, _ = orient_alike(make_directrix(p, name="P"), make_directrix(q, name="Q"))

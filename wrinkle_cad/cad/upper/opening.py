@@ -35,7 +35,17 @@ class CarveRequest:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Opening:
-    """An upper with the strip cut out."""
+    """An upper with the strip cut out.
+
+    Example:
+        >>> from wrinkle_cad import carve
+        >>> from build123d import Edge, Face
+        >>> upper = Face.make_rect(100, 60)
+        >>> p, q = Edge.make_line((-40, -8), (40, -8)), Edge.make_line((-40, 8), (40, 8))
+        >>> opening = carve(upper, p, q, margin=2)
+        >>> len(opening.body.faces()), opening.p.label
+        (1, 'P')
+    """
 
     body_shape: TopoDS_Shape
     """The upper without the strip: a shell, or a compound of shells that share no edge."""
@@ -77,6 +87,10 @@ class Opening:
     """What was asked for."""
     source: object = None
     """The object that the upper came in, whose names and colors the body keeps."""
+
+    def __repr__(self) -> str:
+        _, body, removed = self.areas
+        return f"Opening(body {body:.1f} mm2, removed {removed:.1f} mm2)"
 
     @property
     def area_balance(self) -> float:

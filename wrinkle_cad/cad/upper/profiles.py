@@ -64,6 +64,16 @@ def wrinkle_profiles(
 
     Raises:
         InputError: a value out of range; a callable that returns something else.
+
+    Example:
+        >>> from wrinkle_cad import carve
+        >>> from build123d import Edge, Face
+        >>> upper = Face.make_rect(100, 60)
+        >>> p, q = Edge.make_line((-40, -8), (40, -8)), Edge.make_line((-40, 8), (40, 8))
+        >>> opening = carve(upper, p, q, margin=2)
+        >>> profile, _ = wrinkle_profiles(opening, waves=3, height=2)
+        >>> round(profile.length, 1), round(profile.bounding_box().max.Z, 1)
+        (80.8, 2.0)
     """
     # Its import brings build123d, which profiles as directrices do without.
     from wrinkle_cad.cad.build123d_objects import to_build123d

@@ -19,7 +19,14 @@ Floats = NDArray[np.float64]
 
 
 def smooth_edge(points: Floats) -> TopoDS_Edge:
-    """Returns a cubic B-spline edge through (k, 3) points in mm, k >= 4, C2 throughout."""
+    """Returns a cubic B-spline edge through (k, 3) points in mm, k >= 4, C2 throughout.
+
+    Example:
+        >>> from build123d import Edge
+        >>> points = np.array([[0, 0, 0], [10, 0, 2], [20, 0, 0], [30, 0, -2]], dtype=float)
+        >>> round(Edge(smooth_edge(points)).length, 1)
+        30.8
+    """
     spline = cubic_through(arc_lengths(points), points)
     knots, counts = np.unique(spline.knots, return_counts=True)
     return BRepBuilderAPI_MakeEdge(make_curve(spline.poles, knots, counts, 3)).Edge()

@@ -65,7 +65,18 @@ class StitchReport:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Stitched:
-    """An upper with its wrinkles."""
+    """An upper with its wrinkles.
+
+    Example:
+        >>> from wrinkle_cad import WrinkleStrip, carve, stitch, wrinkle_profiles
+        >>> from build123d import Edge, Face
+        >>> upper = Face.make_rect(100, 60)
+        >>> p, q = Edge.make_line((-40, -8), (40, -8)), Edge.make_line((-40, 8), (40, 8))
+        >>> opening = carve(upper, p, q, margin=2)
+        >>> wrinkle = WrinkleStrip(*wrinkle_profiles(opening, waves=3, height=2), name="wrinkle")
+        >>> type(stitch(opening, wrinkle).shell).__name__
+        'Shell'
+    """
 
     shell_shape: TopoDS_Shell
     """One shell, its normals as in the upper."""
@@ -75,6 +86,10 @@ class Stitched:
     """The shell's faces by what they are: ``body``, then per strip its name and bands."""
     source: object
     """The object that the upper came in."""
+
+    def __repr__(self) -> str:
+        report = self.report
+        return f"Stitched({report.face_count} faces, {report.free_edges_after} free edges)"
 
     @property
     def shell(self) -> Shell:
@@ -105,6 +120,17 @@ def stitch(
         InputError: not as many strips as openings; a profile that does not belong to its opening;
             a band without width or that folds over.
         CadError: the parts do not become one valid shell with the upper's border.
+
+    Example:
+        >>> from wrinkle_cad import WrinkleStrip, carve, wrinkle_profiles
+        >>> from build123d import Edge, Face
+        >>> upper = Face.make_rect(100, 60)
+        >>> p, q = Edge.make_line((-40, -8), (40, -8)), Edge.make_line((-40, 8), (40, 8))
+        >>> opening = carve(upper, p, q, margin=2)
+        >>> p, q = wrinkle_profiles(opening, waves=3, height=2)
+        >>> stitched = stitch(opening, WrinkleStrip(p, q, name="wrinkle"))
+        >>> [name for name, _ in stitched.parts], stitched.report.is_valid
+        (['body', 'wrinkle', 'wrinkle band P', 'wrinkle band Q'], True)
     """
     given = [openings] if isinstance(openings, Opening) else list(openings)
     wanted = list(strips) if isinstance(strips, Sequence) else [strips]

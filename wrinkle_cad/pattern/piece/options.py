@@ -46,7 +46,12 @@ _NOTCH_AT_Q: Final = option(
 
 @dataclass(frozen=True, slots=True)
 class NotchRule:
-    """Where the notches of one side stand; at most one of the first three is given."""
+    """Where the notches of one side stand; at most one of the first three is given.
+
+    Example:
+        >>> PieceSettings(notches_p=NotchRule(at=(20, 55)), notches=3).notch_rules[0].at
+        (20.0, 55.0)
+    """
 
     count: int = field(default=0, metadata=_NOTCHES)
     """Notches at equal distances, none at the ends."""
@@ -228,7 +233,12 @@ def check_piece(chosen: PieceOptions, error: type[InputError] = InputError) -> N
 
 @dataclass(frozen=True, kw_only=True)
 class PieceSettings(PieceOptions):
-    """Everything about a piece that is not its shape. Lengths in mm."""
+    """Everything about a piece that is not its shape. Lengths in mm.
+
+    Example:
+        >>> PieceSettings(seam_allowance=6, lasting_margin=(15, 0, 0, 0)).widths
+        (21.0, 6.0, 6.0, 6.0)
+    """
 
     notches_p: NotchRule | None = None
     """Where the notches of P stand; as ``notches`` and the rest say when None."""

@@ -36,7 +36,16 @@ _Point = tuple[float, float, float]
 
 @dataclass(frozen=True, slots=True)
 class Meeting:
-    """A stretch over which two curves are no further apart than the distance asked for."""
+    """A stretch over which two curves are no further apart than the distance asked for.
+
+    Example:
+        >>> from wrinkle_cad.strip import sample_curve
+        >>> across = lambda t: np.stack((t, 0 * t, 0 * t), axis=1)
+        >>> along = lambda t: np.stack((0.5 + 0 * t, t - 0.5, 0 * t), axis=1)
+        >>> samples = [sample_curve(curve, (0.0, 1.0), 0.01) for curve in (across, along)]
+        >>> [round(meeting.p_start, 2) for meeting in meetings_of(across, along, *samples, 1e-6)]
+        [0.5]
+    """
 
     p_start: float
     """Parameter of the first curve where it begins, exact to a 500th of the curve."""

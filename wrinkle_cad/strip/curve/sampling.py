@@ -39,7 +39,14 @@ GOLDEN: Final = 0.6180339887498949
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Samples:
-    """Vertices on a curve."""
+    """Vertices on a curve.
+
+    Example:
+        >>> import numpy as np
+        >>> circle = lambda t: np.stack((9 * np.cos(t), 9 * np.sin(t), 0 * t), axis=1)
+        >>> sample_curve(circle, (0.0, 3.0), 0.1)
+        Samples(12 from 0 to 3)
+    """
 
     parameters: FloatArray
     """(k,) float64, strictly increasing, from one end of the interval to the other."""
@@ -49,6 +56,9 @@ class Samples:
     def __post_init__(self) -> None:
         self.parameters.setflags(write=False)
         self.points.setflags(write=False)
+
+    def __repr__(self) -> str:
+        return f"Samples({len(self.points)} from {self.parameters[0]:g} to {self.parameters[-1]:g})"
 
 
 def sample_curve(
@@ -86,6 +96,12 @@ def sample_curve(
     Raises:
         InputError: an argument is not finite or out of range, the curve has no length, jumps or is
             not finite, or the tolerance can only be held by chords shorter than 1e-6 of its length.
+
+    Example:
+        >>> circle = lambda t: np.stack((9 * np.cos(t), 9 * np.sin(t), 0 * t), axis=1)
+        >>> samples = sample_curve(circle, (0.0, 3.0), 0.1)
+        >>> samples.parameters.round(3).tolist()
+        [0.0, 0.272, 0.545, 0.818, 1.091, 1.364, 1.636, 1.909, 2.182, 2.455, 2.728, 3.0]
     """
     _check_lengths(tolerance, max_chord)
     corners = _corners(interval, breaks)

@@ -35,6 +35,12 @@ class Unrolling:
     """A strip in the plane, right side up: Q on the left of P, p[0] at the origin, q[0] above it.
 
     Every array is read-only.
+
+    Example:
+        >>> from wrinkle_cad.strip import triangulate
+        >>> tent = triangulate([[0, 0, 0], [3, 0, 4], [6, 0, 0]], [[0, 9, 0], [3, 9, 4], [6, 9, 0]])
+        >>> unroll(tent)
+        Unrolling(3 + 3 samples, 90.0 mm2)
     """
 
     p: FloatArray
@@ -68,6 +74,9 @@ class Unrolling:
         for name in ("p", "q", "p_line", "q_line", "p_arc", "q_arc", "p_index", "q_index"):
             getattr(self, name).setflags(write=False)
 
+    def __repr__(self) -> str:
+        return f"Unrolling({len(self.p)} + {len(self.q)} samples, {self.area:.1f} mm2)"
+
 
 def unroll(triangulation: Triangulation) -> Unrolling:
     """Lays the flat triangles of a strip into the plane.
@@ -81,6 +90,12 @@ def unroll(triangulation: Triangulation) -> Unrolling:
     Returns:
         The strip in the plane, every bank edge and bridge as long as in space. Its lines are the
         samples, its arc lengths those of the chords.
+
+    Example:
+        >>> from wrinkle_cad.strip import triangulate
+        >>> tent = triangulate([[0, 0, 0], [3, 0, 4], [6, 0, 0]], [[0, 9, 0], [3, 9, 4], [6, 9, 0]])
+        >>> unroll(tent).p[:, 0].round(6).tolist()
+        [0.0, 5.0, 10.0]
     """
     strip = _Chain(triangulation)
     outward = strip.before - strip.apex
@@ -140,6 +155,15 @@ def unroll_cones(
     Raises:
         InputError: the tolerance is no positive length, the samples are not those of the
             triangulation, or a curve is not finite or jumps.
+
+    Example:
+        >>> from wrinkle_cad.strip import sample_curve, triangulate
+        >>> p_at = lambda t: np.stack((9 * np.cos(t), 9 * np.sin(t), 0 * t), axis=1)
+        >>> q_at = lambda t: np.stack((9 * np.cos(t), 9 * np.sin(t), 5 + 0 * t), axis=1)
+        >>> p, q = (sample_curve(curve, (0.0, 2.0), 0.01) for curve in (p_at, q_at))
+        >>> flat = unroll_cones(triangulate(p.points, q.points), p, q, p_at, q_at, tolerance=1e-3)
+        >>> round(flat.p_length, 2), round(flat.area, 1)
+        (18.0, 90.0)
     """
     if not (math.isfinite(tolerance) and tolerance > 0):
         raise InputError(
