@@ -1,6 +1,42 @@
 """Mathematics of a strip between two curves in space: arrays in, frozen results out.
 
-Names are exported lazily (PEP 562): importing the folder compiles nothing and loads no numba.
+Glossary:
+
+directrix, rail
+    One of the two curves, P or Q; here its samples ``p`` (m, 3) and ``q`` (n, 3), mm.
+bank
+    An edge between neighbouring samples of one rail: p[i] to p[i+1], or q[j] to q[j+1].
+bridge
+    The straight line from p[i] to q[j], as the pair ``(i, j)``. All but the first and the last are
+    interior bridges.
+P-step, Q-step
+    From one bridge to the next along one bank: one triangle.
+boundary bridge triangulation
+    A path of m+n-1 bridges from (0, 0) to (m-1, n-1), and the m+n-2 triangles between them.
+ruling
+    A straight line of the surface; a bridge stands for one.
+locally convex, valid
+    A bridge past which all four neighbouring samples lie on one side of some plane through it.
+    ``validity_matrix`` tells for every (i, j).
+fold
+    The signed angle in rad by which the sheet turns at a bridge, 0 where it is flat.
+bending
+    The energy of all folds together; what a triangulation has least of.
+twist
+    The angle in rad by which the sheet's normal turns along a ruling; 0 if it is developable.
+inflection bridge
+    Invalid only because the bending changes its sign there: no defect.
+gap
+    A stretch without exact rulings, between two that have them.
+fan
+    Triangles, or rulings, that share one point of a rail; a part of a cone.
+unrolling, flat
+    Laying the triangles, or cones over the rails' curves, into the plane, one after the other.
+planarity
+    The distance in mm that does not count when it is asked whether points lie in one plane.
+
+Not handled: more than two rails, branching strips. Names are exported lazily (PEP 562): importing
+the folder compiles nothing and loads no numba.
 """
 
 from __future__ import annotations
