@@ -34,9 +34,8 @@ def test_a_color_may_be_a_name() -> None:
 
 @pytest.mark.parametrize("corners", [SQUARE, SQUARE[::-1], [*SQUARE, SQUARE[0]]])
 def test_an_outline_becomes_a_face_that_looks_up(corners: list[tuple[float, float]]) -> None:
-    sketch = sketch_from_outline([np.array(corners)], "pattern")
+    sketch = sketch_from_outline([np.array(corners)])
     assert isinstance(sketch, b3d.Sketch)
-    assert sketch.label == "pattern"
     (face,) = sketch.faces()
     assert tuple(face.normal_at()) == pytest.approx((0.0, 0.0, 1.0))
     assert sketch.area == pytest.approx(4.0)

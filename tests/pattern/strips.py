@@ -2,8 +2,13 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
+from wrinkle_cad.pattern.formats.dxf import dxf_file
+from wrinkle_cad.pattern.piece.making import make_pieces
+from wrinkle_cad.pattern.piece.options import PieceSettings
 from wrinkle_cad.strip import triangulate, unroll
 
 
@@ -77,3 +82,19 @@ def kinked(length=120.0, width=30.0):
     p = np.array(((0, 0, 0), (0.5 * length, -25, 0), (length, 0, 0)))
     x = np.linspace(0.0, length, 9)
     return unrolled(p, np.column_stack((x, 0 * x + width, 0 * x)))
+
+
+def one_piece(unrolling, triangulation, *, name, settings=None):
+    """The piece of a strip that needs no second one."""
+    (piece,) = make_pieces(
+        unrolling,
+        triangulation,
+        name=name,
+        settings=replace(settings or PieceSettings(), overlap="refuse"),
+    )
+    return piece
+
+
+def dxf_bytes(pieces, **options):
+    """Only the bytes of a DXF file."""
+    return dxf_file(pieces, **options).content

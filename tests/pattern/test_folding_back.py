@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from tests.pattern import strips
-from wrinkle_cad.pattern.piece.making import make_piece
+from tests.pattern.strips import one_piece
 from wrinkle_cad.pattern.piece.options import PieceSettings
 
 
@@ -68,7 +68,7 @@ def test_flat_facets_fold_back_into_the_strip(case):
 def test_the_piece_in_memory_folds_back_into_the_strip(case):
     unrolling, triangulation = CASES[case]()
     settings = PieceSettings(tolerance=1e-6, rulings=True)
-    piece = make_piece(unrolling, triangulation, name="strip", settings=settings)
+    piece = one_piece(unrolling, triangulation, name="strip", settings=settings)
     inner = triangulation.bridges[1:-1]
     p, q = np.full((len(unrolling.p), 2), np.nan), np.full((len(unrolling.q), 2), np.nan)
     p[inner[:, 0]], q[inner[:, 1]] = piece.rulings[:, 0], piece.rulings[:, 1]
@@ -95,7 +95,7 @@ def test_folding_the_wrong_way_is_noticed():
 
 def test_the_outside_of_a_cylinder_has_mountains_only():
     unrolling, triangulation = strips.cylinder()
-    piece = make_piece(unrolling, triangulation, name="tube", settings=PieceSettings(rulings=True))
+    piece = one_piece(unrolling, triangulation, name="tube", settings=PieceSettings(rulings=True))
     folds = piece.ruling_fold[np.abs(piece.ruling_fold) > 1e-9]
     assert np.all(folds > 0.0)
     assert folds.sum() == pytest.approx(2.0 * 58 / 59)

@@ -47,13 +47,12 @@ def to_build123d(
     return result
 
 
-def sketch_from_outline(outlines: Sequence[ArrayLike], label: str = "") -> Sketch:
+def sketch_from_outline(outlines: Sequence[ArrayLike]) -> Sketch:
     """Returns a build123d sketch on XY, its faces looking up, with one face for each outline.
 
     Args:
         outlines: each (k, 2) mm, k >= 3: the corners of a polygon that does not cross itself, in
             either direction; the first may be repeated at the end.
-        label: what viewers and files call it.
 
     Raises:
         InputError: an outline that is no polygon.
@@ -62,9 +61,7 @@ def sketch_from_outline(outlines: Sequence[ArrayLike], label: str = "") -> Sketc
     from build123d import Sketch
 
     faces = [_polygon_face(np.asarray(outline, dtype=np.float64)) for outline in outlines]
-    sketch = Sketch(make_compound(faces))
-    sketch.label = label
-    return sketch
+    return Sketch(make_compound(faces))
 
 
 def _polygon_face(corners: np.ndarray[Any, np.dtype[np.float64]]) -> TopoDS_Face:

@@ -9,8 +9,8 @@ import ezdxf
 import pytest
 
 from tests.pattern import strips
+from tests.pattern.strips import dxf_bytes
 from wrinkle_cad.pattern.check.judging import judge_dxf
-from wrinkle_cad.pattern.formats.dxf import dxf_bytes
 from wrinkle_cad.pattern.piece.making import make_pieces
 from wrinkle_cad.pattern.piece.options import NotchRule, PieceSettings
 

@@ -11,10 +11,10 @@ import ezdxf
 import pytest
 
 from tests.pattern import strips
+from tests.pattern.strips import dxf_bytes
 from wrinkle_cad.errors import InputError
 from wrinkle_cad.pattern.check import limits
 from wrinkle_cad.pattern.check.judging import judge_dxf
-from wrinkle_cad.pattern.formats.dxf import dxf_bytes
 from wrinkle_cad.pattern.piece.making import make_pieces
 
 SQUARE = ((0, 0), (100, 0), (100, 50), (0, 50))

@@ -5,8 +5,9 @@ import pytest
 import shapely
 
 from tests.pattern import strips
+from tests.pattern.strips import one_piece
 from wrinkle_cad.errors import InputError
-from wrinkle_cad.pattern.piece.making import make_piece, make_pieces
+from wrinkle_cad.pattern.piece.making import make_pieces
 from wrinkle_cad.pattern.piece.options import SIDES, NotchRule, PieceSettings
 from wrinkle_cad.pattern.piece.stacking import laid_out
 
@@ -22,7 +23,7 @@ def test_a_piece_stands_in_the_fixed_frame():
 
 
 def test_the_outline_runs_along_p_then_the_end_then_back_along_q():
-    piece = make_piece(*strips.rectangle(120.0, 40.0), name="strip")
+    piece = one_piece(*strips.rectangle(120.0, 40.0), name="strip")
     assert piece.sew_line.tolist() == pytest.approx(
         np.array(((0, 0), (120, 0), (120, 40), (0, 40))), abs=1e-9
     )
@@ -33,14 +34,14 @@ def test_the_outline_runs_along_p_then_the_end_then_back_along_q():
 
 def test_the_strip_is_turned_but_never_mirrored():
     unrolling, triangulation = strips.kinked()
-    piece = make_piece(unrolling, triangulation, name="strip")
+    piece = one_piece(unrolling, triangulation, name="strip")
     # P dips 25 mm away from Q in its middle: below the line of its ends, with Q above.
     assert piece.sew_line[1, 1] == pytest.approx(-25.0)
     assert piece.sew_line[:, 1].max() == pytest.approx(30.0)
 
 
 def test_rails_that_meet_leave_no_end_sides():
-    piece = make_piece(*strips.lens(), name="lens")
+    piece = one_piece(*strips.lens(), name="lens")
     assert set(piece.sew.sides.tolist()) == {0, 1}
     assert int(piece.sew.corners.sum()) == 2
 
@@ -49,7 +50,7 @@ def test_no_segment_is_shorter_than_the_tolerance():
     x = np.concatenate((np.linspace(0.0, 1.0, 500), np.linspace(1.001, 100.0, 30)))
     p = np.column_stack((x, 0 * x, 0 * x))
     q = np.column_stack((x, 0 * x + 20.0, 0 * x))
-    piece = make_piece(*strips.unrolled(p, q), name="strip")
+    piece = one_piece(*strips.unrolled(p, q), name="strip")
     lengths = np.linalg.norm(np.roll(piece.sew_line, -1, axis=0) - piece.sew_line, axis=1)
     assert lengths.min() >= piece.tolerance
     assert shapely.Polygon(piece.sew_line).area == pytest.approx(2000.0)
@@ -57,12 +58,12 @@ def test_no_segment_is_shorter_than_the_tolerance():
 
 def test_a_strip_below_the_tolerance_is_refused():
     with pytest.raises(InputError, match="use a finer tolerance"):
-        make_piece(*strips.rectangle(10.0, 0.01), name="thread")
+        one_piece(*strips.rectangle(10.0, 0.01), name="thread")
 
 
 def test_everything_in_a_piece_is_read_only():
     settings = PieceSettings(seam_allowance=(3.0,) * 4, notches_p=NotchRule(count=1))
-    piece = make_piece(*strips.rectangle(), name="strip", settings=settings)
+    piece = one_piece(*strips.rectangle(), name="strip", settings=settings)
     arrays = [
         piece.cut_line, piece.sew_line, piece.grain_line, piece.rulings, piece.ruling_fold,
         piece.drill_holes, piece.cut.sides, piece.cut.corners, piece.notches[0].position,
@@ -73,14 +74,14 @@ def test_everything_in_a_piece_is_read_only():
 
 def test_lasting_margin_comes_on_top_of_the_allowance_of_its_edge():
     settings = PieceSettings(seam_allowance=(5.0,) * 4, lasting_margin=(15.0, 0.0, 0.0, 0.0))
-    piece = make_piece(*strips.rectangle(120.0, 40.0), name="strip", settings=settings)
+    piece = one_piece(*strips.rectangle(120.0, 40.0), name="strip", settings=settings)
     assert piece.widths == (20.0, 5.0, 5.0, 5.0)
     expected = shapely.box(-5.0, -20.0, 125.0, 45.0)
     assert shapely.Polygon(piece.cut_line).symmetric_difference(expected).area < 1e-6
 
 
 def test_the_grain_runs_along_the_strip_inside_the_piece():
-    piece = make_piece(*strips.cylinder(), name="tube")
+    piece = one_piece(*strips.cylinder(), name="tube")
     run = piece.grain_line[1] - piece.grain_line[0]
     assert run[1] == pytest.approx(0.0, abs=1e-9)
     assert run[0] == pytest.approx(0.7 * np.ptp(piece.sew_line[:, 0]), rel=1e-6)
@@ -102,7 +103,7 @@ def test_the_grain_runs_along_the_strip_inside_the_piece():
 def test_a_direction_in_space_is_unrolled_at_the_middle_of_the_strip(direction, flat):
     # At the middle of this cylinder (1 rad of 2) the way along it is (cos 1, 0, -sin 1).
     settings = PieceSettings(grain=direction, stretch=direction)
-    piece = make_piece(*strips.cylinder(count=61), name="tube", settings=settings)
+    piece = one_piece(*strips.cylinder(count=61), name="tube", settings=settings)
     for line in (piece.grain_line, piece.stretch_line):
         run = (line[1] - line[0]) / np.linalg.norm(line[1] - line[0])
         assert run == pytest.approx(flat, abs=0.02)
@@ -112,12 +113,12 @@ def test_a_direction_across_the_surface_is_refused():
     settings = PieceSettings(grain=(np.sin(1.0), 0.0, np.cos(1.0)))
     made = strips.cylinder(count=60)
     with pytest.raises(InputError, match="perpendicular to the strip"):
-        make_piece(*made, name="tube", settings=settings)
+        one_piece(*made, name="tube", settings=settings)
 
 
 def test_drill_holes_stand_where_their_shares_say():
     settings = PieceSettings(drill_holes=((0.25, 0.5), (0.5, 0.1)))
-    piece = make_piece(*strips.rectangle(120.0, 40.0), name="strip", settings=settings)
+    piece = one_piece(*strips.rectangle(120.0, 40.0), name="strip", settings=settings)
     assert piece.drill_holes.tolist() == pytest.approx(np.array(((30, 20), (60, 4))))
 
 
@@ -142,14 +143,9 @@ def edges(outline):
     return zip(map(tuple, middles), outline.sides.tolist(), strict=True)
 
 
-def test_a_pair_does_not_fit_into_one_piece():
-    with pytest.raises(InputError, match="2 pieces of vamp are wanted"):
-        make_piece(*strips.rectangle(), name="vamp", settings=PieceSettings(hand="left"))
-
-
 def test_the_texts_say_what_a_cutting_room_asks():
     settings = PieceSettings(size="38", quantity=2, material="Calf", tolerance=0.1)
-    piece = make_piece(*strips.rectangle(), name="vamp", settings=settings)
+    piece = one_piece(*strips.rectangle(), name="vamp", settings=settings)
     assert piece.texts == (
         "vamp", "SIZE 38", "QUANTITY 2", "RIGHT SIDE UP", "MATERIAL Calf",
         "UNITS MM, CHORD TOLERANCE 0.1 MM",
@@ -158,9 +154,9 @@ def test_the_texts_say_what_a_cutting_room_asks():
 
 def test_rulings_can_be_thinned_out():
     made = strips.cylinder(count=200)
-    every = make_piece(*made, name="tube", settings=PieceSettings(rulings=True)).rulings
+    every = one_piece(*made, name="tube", settings=PieceSettings(rulings=True)).rulings
     thinned = PieceSettings(rulings=True, ruling_spacing=5.0)
-    some = make_piece(*made, name="tube", settings=thinned).rulings
+    some = one_piece(*made, name="tube", settings=thinned).rulings
     assert len(every) == 397
     assert 10 <= len(some) <= 13
 
@@ -221,9 +217,9 @@ def test_a_hole_outside_the_piece_is_refused():
     q = np.array(((0, 10, 0), (40, 80, 0), (45, 10, 0), (100, 10, 0)), float)
     made = strips.unrolled(p, q, ("length",))
     inside = PieceSettings(drill_holes=((0.2, 0.9),))
-    assert len(make_piece(*made, name="peak", settings=inside).drill_holes) == 1
+    assert len(one_piece(*made, name="peak", settings=inside).drill_holes) == 1
     with pytest.raises(InputError, match="outside the flat piece"):
-        make_piece(*made, name="peak", settings=PieceSettings(drill_holes=((0.56, 0.9),)))
+        one_piece(*made, name="peak", settings=PieceSettings(drill_holes=((0.56, 0.9),)))
 
 
 def test_texts_stay_inside_the_piece_unless_it_is_too_narrow_for_the_smallest():
@@ -236,7 +232,7 @@ def test_texts_stay_inside_the_piece_unless_it_is_too_narrow_for_the_smallest():
         strips.cylinder(),
         strips.lens(),
     ):
-        piece = make_piece(*made, name="vamp")
+        piece = one_piece(*made, name="vamp")
         labels = draw(piece).labels
         assert [label.text for label in labels] == list(piece.texts)
         sizes.append(labels[0].height)
@@ -246,5 +242,5 @@ def test_texts_stay_inside_the_piece_unless_it_is_too_narrow_for_the_smallest():
             high = low + label.height * np.array((0.9 * len(label.text), 1.0))
             assert region.contains(shapely.box(*low, *high))
     assert sizes[1] < sizes[0] <= 4.0
-    narrow = make_piece(*strips.rectangle(120.0, 3.0), name="lace")
+    narrow = one_piece(*strips.rectangle(120.0, 3.0), name="lace")
     assert {label.height for label in draw(narrow).labels} == {1.0}

@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 
 from tests.pattern import strips
-from wrinkle_cad.pattern.piece.making import make_piece, make_pieces
+from tests.pattern.strips import one_piece
+from wrinkle_cad.pattern.piece.making import make_pieces
 from wrinkle_cad.pattern.piece.options import PieceSettings
 from wrinkle_cad.strip import triangulate, unroll
 
@@ -13,7 +14,7 @@ RADIUS, ANGLE, WIDTH, THICKNESS = 30.0, 2.0, 25.0, 2.0
 
 def piece_of(made, thickness, side):
     settings = PieceSettings(thickness=thickness, surface_side=side, tolerance=1e-6)
-    return make_piece(*made, name="tube", settings=settings)
+    return one_piece(*made, name="tube", settings=settings)
 
 
 def length_of(piece):
@@ -69,7 +70,7 @@ def test_notches_stay_at_the_arc_lengths_of_the_surface():
 
     made = strips.cylinder(RADIUS, ANGLE, WIDTH, 60)
     thin, thick = (
-        make_piece(
+        one_piece(
             *made,
             name="tube",
             settings=PieceSettings(

@@ -7,9 +7,10 @@ import pytest
 import shapely
 
 from tests.pattern import strips
+from tests.pattern.strips import one_piece
 from wrinkle_cad.errors import InputError
 from wrinkle_cad.pattern.piece.flat import flat_strip
-from wrinkle_cad.pattern.piece.making import make_piece, make_pieces
+from wrinkle_cad.pattern.piece.making import make_pieces
 from wrinkle_cad.pattern.piece.options import END_SIDE, START_SIDE, NotchRule, PieceSettings
 from wrinkle_cad.pattern.piece.splitting import overlaps
 
@@ -28,7 +29,7 @@ def test_an_overlapping_pattern_is_refused_on_request(ramp):
     with pytest.raises(InputError, match="overlaps itself when flat"):
         make_pieces(*ramp, name="ramp", settings=PieceSettings(overlap="refuse"))
     with pytest.raises(InputError, match="overlaps itself when flat"):
-        make_piece(*ramp, name="ramp")
+        one_piece(*ramp, name="ramp")
 
 
 def test_an_overlapping_pattern_is_split_into_simple_pieces_with_a_warning(ramp):

@@ -205,7 +205,6 @@ def _assemble(
     pieces: Sequence[PoleCurve],
     *,
     is_polyline: bool = False,
-    is_reversed: bool = False,
 ) -> Directrix:
     lengths = [_length(piece) for piece in pieces]
     total = float(sum(lengths))
@@ -229,7 +228,7 @@ def _assemble(
         length=total,
         is_closed=bool(np.array_equal(placed[0].poles[0], placed[-1].poles[-1])),
         is_polyline=is_polyline,
-        is_reversed=is_reversed,
+        is_reversed=False,
     )
 
 

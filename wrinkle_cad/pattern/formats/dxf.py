@@ -113,28 +113,6 @@ def _export(document: Drawing, stream: io.StringIO, *, is_r12: bool, is_blocks: 
         r12export.write(document, stream)
 
 
-def dxf_bytes(
-    pieces: Sequence[PatternPiece],
-    *,
-    profile: str | Path | Profile = settings.DXF_PROFILE,
-    version: DxfVersion | None = None,
-    curves: Curves = "lines",
-    test_square: bool = False,
-    style: str = settings.STYLE_NAME,
-    timestamp: datetime | None = None,
-) -> bytes:
-    """Returns only the bytes of ``dxf_file``, with the same arguments and errors."""
-    return dxf_file(
-        pieces,
-        profile=profile,
-        version=version,
-        curves=curves,
-        test_square=test_square,
-        style=style,
-        timestamp=timestamp,
-    ).content
-
-
 def write_dxf(
     path: Path,
     pieces: Sequence[PatternPiece],

@@ -199,27 +199,6 @@ def finished_pieces(
     return tuple(pieces)
 
 
-def make_piece(
-    unrolling: Unrolling,
-    triangulation: Triangulation,
-    *,
-    name: str,
-    settings: PieceSettings | None = None,
-) -> PatternPiece:
-    """Returns the one piece of a strip that fits into one; see ``make_pieces``.
-
-    Raises:
-        InputError: as ``make_pieces``, and whenever more than one piece would be needed.
-    """
-    chosen = replace(settings or PieceSettings(), overlap="refuse")
-    pieces = make_pieces(unrolling, triangulation, name=name, settings=chosen)
-    if len(pieces) > 1:
-        raise InputError(
-            f"{len(pieces)} pieces of {name} are wanted (hand), not one. Use make_pieces."
-        )
-    return pieces[0]
-
-
 def _drafted(
     strip: FlatStrip, arcs: tuple[Floats, Floats], name: str, chosen: PieceSettings
 ) -> tuple[PatternPiece, tuple[Refusal, ...]]:
