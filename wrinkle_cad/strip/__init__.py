@@ -47,6 +47,10 @@ from typing import TYPE_CHECKING, Any, Final
 # What is found lazily below, for type checkers and editors; a test holds the two together.
 if TYPE_CHECKING:
     from .convexity import validity_matrix as validity_matrix
+    from .crossings import SelfCrossings as SelfCrossings
+    from .crossings import self_crossings as self_crossings
+    from .curve.meetings import Meeting as Meeting
+    from .curve.meetings import meetings_of as meetings_of
     from .curve.sampling import Samples as Samples
     from .curve.sampling import sample_curve as sample_curve
     from .flat.unrolling import Unrolling as Unrolling
