@@ -88,6 +88,10 @@ FINEST_TOLERANCE_PER_SIZE: Final = 1e-11
 UNROLLING_ACCURACY: Final = 1e-11
 """Between samples, polynomials follow a curve to this share of its extent while it is unrolled."""
 
+FLAT_LINE_PER_TOLERANCE: Final = 0.2
+"""The flat rails follow their curves to this share of the chord tolerance: chords are shorter than
+their curve in proportion to it, and seams are to agree to 1e-4."""
+
 TURNED_BACK_PER_TOLERANCE: Final = 1e-3
 """A curve segment turns back, seen from its apex, if it sweeps this share of the tolerance back."""
 

@@ -63,13 +63,21 @@ def _size(triangulation: Triangulation) -> float:
 
 
 def flat_findings(name: str, unrolling: Unrolling) -> tuple[Finding, ...]:
-    """Returns whether a strip's pattern will be in several pieces."""
-    if not unrolling.overlaps:
-        return ()
-    message = (
-        f"{name} covers itself when laid flat: its pattern is split at bridges into several pieces."
-    )
-    return (Finding("flat-overlaps", "warning", message),)
+    """Returns what is unsure about a strip laid flat."""
+    findings = []
+    if unrolling.overlaps:
+        message = (
+            f"{name} covers itself when laid flat: its pattern is split at bridges into several"
+            " pieces."
+        )
+        findings.append(Finding("flat-overlaps", "warning", message))
+    if unrolling.turned_back_count:
+        message = (
+            f"{unrolling.turned_back_count} faces of {name} stand on a curve that turns back as"
+            " seen from their apex; in space they are folded there. Take a finer tolerance."
+        )
+        findings.append(Finding("turned-back", "warning", message))
+    return tuple(findings)
 
 
 def area_findings(name: str, error: float) -> tuple[Finding, ...]:

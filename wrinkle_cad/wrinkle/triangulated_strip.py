@@ -6,7 +6,7 @@ import contextlib
 from dataclasses import fields, replace
 from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Final, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -39,10 +39,6 @@ if TYPE_CHECKING:
     from wrinkle_cad.strip.rulings.surface import RuledStrip
 
     from .cut_pattern import Pattern
-
-_FLAT_LINE_PER_TOLERANCE: Final = 0.2
-"""The flat rails follow their curves to this share of the chord tolerance: chords are shorter than
-their curve in proportion to it, and seams are to agree to 1e-4."""
 
 
 class TriangulatedStrip:
@@ -188,7 +184,7 @@ class TriangulatedStrip:
             self.q_samples,
             self.p.point_at,
             self.q.point_at,
-            tolerance=_FLAT_LINE_PER_TOLERANCE * self.tolerance,
+            tolerance=settings.FLAT_LINE_PER_TOLERANCE * self.tolerance,
         )
 
     @cached_property

@@ -14,6 +14,7 @@ from wrinkle_cad.options.checking import check_known
 from wrinkle_cad.options.option import options_of
 from wrinkle_cad.options.signature import takes_options_of
 from wrinkle_cad.pattern.piece.options import Direction
+from wrinkle_cad.strip.flat.turning import without_turning_back
 from wrinkle_cad.strip.triangulation import triangulate
 
 from .options import StripArguments, StripSettings
@@ -77,8 +78,12 @@ class WrinkleStrip(TriangulatedStrip):
         p_rail, q_rail, was_turned = orient_alike(given_p, given_q)
         samples = sample_rails(p_rail, q_rail, chosen.tolerance, chosen.max_chord)
         check_apart(p_rail, q_rail, *samples)
-        triangulation, (p_samples, q_samples) = search_between(
-            (p_rail, q_rail), samples, chosen.tolerance, _search(chosen)
+        search = _search(chosen)
+        triangulation, (p_samples, q_samples) = without_turning_back(
+            *search_between((p_rail, q_rail), samples, chosen.tolerance, search),
+            (p_rail.point_at, q_rail.point_at),
+            search,
+            tolerance=settings.FLAT_LINE_PER_TOLERANCE * chosen.tolerance,
         )
         super().__init__(
             p_rail,

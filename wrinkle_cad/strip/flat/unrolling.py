@@ -172,12 +172,49 @@ def unroll_cones(
     _check_samples("P", p_samples, triangulation.p)
     _check_samples("Q", q_samples, triangulation.q)
     strip = _Chain(triangulation)
-    is_p = strip.is_p
-    cells = exact_rails((p_at, q_at), (p_samples, q_samples))
-    planes = _planes(triangulation, cells, (p_samples, q_samples))
-    flat_p = _developed(cells[0], p_samples, strip.apex[is_p], planes[is_p], tolerance)
-    flat_q = _developed(cells[1], q_samples, strip.apex[~is_p], -planes[~is_p], tolerance)
+    flat_p, flat_q = _both_developed(strip, (p_samples, q_samples), (p_at, q_at), tolerance)
     return _cones_in_plane(triangulation.steps, strip, flat_p, flat_q, tolerance)
+
+
+def backward_sweeps(
+    triangulation: Triangulation,
+    p_samples: Samples,
+    q_samples: Samples,
+    p_at: PointAt,
+    q_at: PointAt,
+    *,
+    tolerance: float,
+) -> tuple[tuple[FloatArray, FloatArray], tuple[FloatArray, FloatArray]]:
+    """Returns how far the bank curves of cones turn back, as seen from their apexes.
+
+    The arguments are those of ``unroll_cones``.
+
+    Returns:
+        For P and for Q: (k - 1,) float64, mm, how far the closing ruling is swept backwards in all
+        while the curve between two samples is run through; (k - 1, 3) float64, mm, the apexes.
+    """
+    strip = _Chain(triangulation)
+    flat_p, flat_q = _both_developed(strip, (p_samples, q_samples), (p_at, q_at), tolerance)
+    is_p = strip.is_p
+    return (
+        (strip.radii[is_p] * flat_p.back, strip.apex[is_p]),
+        (strip.radii[~is_p] * flat_q.back, strip.apex[~is_p]),
+    )
+
+
+def _both_developed(
+    strip: _Chain,
+    samples: tuple[Samples, Samples],
+    curves: tuple[PointAt, PointAt],
+    tolerance: float,
+) -> tuple[DevelopedRail, DevelopedRail]:
+    cells = exact_rails(curves, samples)
+    planes = _planes(strip.triangulation, cells, samples)
+    (p_cells, q_cells), (p_samples, q_samples), is_p = cells, samples, strip.is_p
+    return (
+        _developed(p_cells, p_samples, strip.apex[is_p], planes[is_p], tolerance),
+        _developed(q_cells, q_samples, strip.apex[~is_p], -planes[~is_p], tolerance),
+    )
 
 
 def _cones_in_plane(
@@ -219,6 +256,7 @@ class _Chain:
     """The triangles of a strip as apex, bank edge and closing bridge, one row per step."""
 
     def __init__(self, triangulation: Triangulation) -> None:
+        self.triangulation = triangulation
         points_p, points_q = triangulation.p, triangulation.q
         self.is_p = triangulation.steps == P_STEP
         self.bridges = triangulation.bridges[:-1]
