@@ -111,7 +111,7 @@ def _add_inspect(commands: Any) -> None:
 
 
 def _add_compare(commands: Any) -> None:
-    compare = commands.add_parser("compare", help="run the paper's four methods on one file")
+    compare = commands.add_parser("compare", help="run the paper's methods on one file")
     compare.set_defaults(command=_compare)
     add_job_arguments(compare)
     compare.add_argument("--name", metavar="STEM", help="stem of the outputs")

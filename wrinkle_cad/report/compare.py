@@ -1,4 +1,4 @@
-"""The four methods of the paper on one strip, side by side (Wang and Tang, section 7)."""
+"""The methods of the paper on one strip, side by side (Wang and Tang, section 7)."""
 
 from __future__ import annotations
 

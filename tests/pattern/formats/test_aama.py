@@ -180,11 +180,11 @@ def test_marks_stand_on_their_layers(dxf):
         assert dxf.on("15", "TEXT", block)
 
 
-def test_mountains_and_valleys_differ_in_colour_and_a_text_says_so(dxf):
-    colours = {e.text(62) for e in dxf.on("8", "POLYLINE", "VAMP_38")}
-    assert colours == {"1", "5"}
+def test_mountains_and_valleys_differ_in_color_and_a_text_says_so(dxf):
+    colors = {e.text(62) for e in dxf.on("8", "POLYLINE", "VAMP_38")}
+    assert colors == {"1", "5"}
     notes = [e.text(1) for e in dxf.on("15", "TEXT", "VAMP_38")]
-    assert "RULINGS: COLOUR 1 MOUNTAIN, 5 VALLEY" in notes
+    assert "RULINGS: COLOR 1 MOUNTAIN, 5 VALLEY" in notes
 
 
 def test_cut_outs_are_lines_on_layer_11_with_points_and_copies():

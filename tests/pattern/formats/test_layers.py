@@ -15,7 +15,7 @@ from wrinkle_cad.pattern.piece.options import NotchRule, PieceSettings
 OWN = """
 name = "atom"
 [layers]
-cut = { layer = "KNIFE1", colour = 3 }
+cut = { layer = "KNIFE1", color = 3 }
 sew = "PEN"
 notch = { layer = "KNIFE2" }
 mountain = { layer = "PEN", line_type = "dotted" }
@@ -36,6 +36,11 @@ def test_every_shipped_profile_knows_its_roles_and_keeps_the_cut_apart():
         assert set(profile.styles) <= set(ROLES)
         cut = profile.styles["cut"].layer
         assert [role for role, style in profile.styles.items() if style.layer == cut] == ["cut"]
+
+
+def test_a_map_may_spell_colour_as_earlier_ones_did(tmp_path):
+    styles = profile_from(written(tmp_path, OWN.replace("color", "colour"))).styles
+    assert styles["cut"].color == 3
 
 
 def test_a_users_own_map_is_used_where_it_says_something(tmp_path):
@@ -69,7 +74,7 @@ def test_an_empty_map_is_the_cutters(tmp_path):
         ("[layers]\nsew = ''", "1 to 31 of"),
         ("[layers]\nsew = 'a b'", "1 to 31 of"),
         ("[layers]\nsew = { layer = 'A', colour = 0 }", "whole number 1 to 255"),
-        ("[layers]\nsew = { layer = 'A', colour = true }", "whole number 1 to 255"),
+        ("[layers]\nsew = { layer = 'A', color = true }", "whole number 1 to 255"),
         ("[layers]\nsew = { layer = 'A', line_type = 'wavy' }", "one of CONTINUOUS"),
         ("[layers]\nsew = { layer = 'A', width = 3 }", "sew.width"),
         ("[layers]\nsew = 'CUT'", "sew on the cut layer CUT"),

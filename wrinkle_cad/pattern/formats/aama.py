@@ -45,7 +45,7 @@ VALIDATION: Final = {"1": "84", "8": "85", "11": "86", "14": "87"}
 _ASTM_NOTCHES: Final[dict[NotchKind, str]] = {"t": "80", "castle": "81", "check": "82", "u": "83"}
 _DENSE: Final = 2.0
 """mm; largest distance of vertices on a validation curve."""
-_PLAIN_COLOUR: Final = 7
+_PLAIN_COLOR: Final = 7
 _NAME_LENGTH: Final = 20
 """Characters of a piece's name, and of its size, in the name of its block (31 in R12)."""
 
@@ -164,7 +164,7 @@ def _texts(piece: PatternPiece, profile: Profile) -> list[tuple[str, str]]:
             notes.append(piece.hand.upper())
         if len(piece.rulings) and "mountain" in profile.styles and "valley" in profile.styles:
             mountain, valley = profile.styles["mountain"], profile.styles["valley"]
-            notes.append(f"RULINGS: COLOUR {mountain.colour} MOUNTAIN, {valley.colour} VALLEY")
+            notes.append(f"RULINGS: COLOR {mountain.color} MOUNTAIN, {valley.color} VALLEY")
     note_layer = profile.styles["text"].layer if notes else ""
     return [*((text, "1") for text in system), *((text, note_layer) for text in notes)]
 
@@ -217,8 +217,8 @@ def _write_contour(
 ) -> None:
     """Writes a line, the points at its vertices and its dense copy."""
     given: dict[str, object] = {"layer": style.layer}
-    if style.colour != _PLAIN_COLOUR:
-        given["color"] = style.colour
+    if style.color != _PLAIN_COLOR:
+        given["color"] = style.color
     block.add_polyline2d(list(map(rounded, points)), close=is_closed, dxfattribs=given)
     if style.layer not in VALIDATION:
         return
@@ -284,12 +284,12 @@ def _write_style(
 
 def _add_layers(document: DxfDocument, profile: Profile) -> None:
     """Enters the layers in use in the layer table, which the R12 form for Gerber leaves out."""
-    colours = {style.layer: style.colour for style in profile.styles.values()}
+    colors = {style.layer: style.color for style in profile.styles.values()}
     spaces = [document.modelspace(), *(block for block in document.blocks)]
     used = sorted({entity.dxf.layer for space in spaces for entity in space}, key=_layer_order)
     for layer in used:
         if layer not in document.layers:
-            document.layers.add(layer, color=colours.get(layer, _PLAIN_COLOUR))
+            document.layers.add(layer, color=colors.get(layer, _PLAIN_COLOR))
 
 
 def _layer_order(layer: str) -> tuple[int, str]:

@@ -64,7 +64,7 @@ def cutter_document(
 
 def attributes(style: LayerStyle) -> dict[str, object]:
     """Returns a style as ezdxf's attributes."""
-    given: dict[str, object] = {"layer": style.layer, "color": style.colour}
+    given: dict[str, object] = {"layer": style.layer, "color": style.color}
     if style.line_type != "CONTINUOUS":
         given["linetype"] = style.line_type
     return given
@@ -86,7 +86,7 @@ def _add_tables(document: DxfDocument, profile: Profile) -> None:
         first.setdefault(style.layer, style)
     for layer, style in first.items():
         if layer not in document.layers:
-            document.layers.add(layer, color=style.colour)
+            document.layers.add(layer, color=style.color)
 
 
 def _remove_unused_layers(document: DxfDocument) -> None:

@@ -1,8 +1,8 @@
-"""Which layer, colour and line type each kind of line gets: the profiles and a user's own map.
+"""Which layer, color and line type each kind of line gets: the profiles and a user's own map.
 
 In ``cutter`` every kind has a layer of its own; rulings share one, mountains dash-dotted and
 valleys dashed (red and blue). ``aama`` and ``astm`` use the trade's layer numbers; there the file
-has no line types, so mountains and valleys differ in colour only, and a text says which is which.
+has no line types, so mountains and valleys differ in color only, and a text says which is which.
 """
 
 from __future__ import annotations
@@ -45,12 +45,12 @@ class LayerStyle:
 
     Attributes:
         layer: its layer, a name that DXF R12 accepts.
-        colour: AutoCAD colour index 1...255 (7 is black on white).
+        color: AutoCAD color index 1...255 (7 is black on white).
         line_type: a key of ``LINE_TYPES``.
     """
 
     layer: str
-    colour: int = 7
+    color: int = 7
     line_type: str = "CONTINUOUS"
 
 
@@ -111,7 +111,7 @@ def profile_from(source: str | Path) -> Profile:
     """Returns a shipped profile by name, or the user's own from a ``.toml`` file.
 
     The file has a table ``[layers]`` with roles as keys and as values a layer name, a table
-    ``{layer, colour, line_type}`` or ``false`` to leave the role out. Roles it does not name are
+    ``{layer, color, line_type}`` or ``false`` to leave the role out. Roles it does not name are
     as in ``cutter``.
 
     Raises:
@@ -158,18 +158,20 @@ def _style(role: str, wanted: object, usual: LayerStyle, path: Path) -> LayerSty
     given = {"layer": wanted} if isinstance(wanted, str) else wanted
     if not isinstance(given, dict):
         raise _refused(path, f"{role} = {wanted!r}", "a layer name, a table or false")
-    for key in sorted(set(given) - {"layer", "colour", "line_type"}):
-        raise _refused(path, f"{role}.{key}", "layer, colour and line_type")
+    # Users' files from before one spelling was settled on go on working.
+    given = {"color" if key == "colour" else key: value for key, value in given.items()}
+    for key in sorted(set(given) - {"layer", "color", "line_type"}):
+        raise _refused(path, f"{role}.{key}", "layer, color and line_type")
     layer = given.get("layer", usual.layer)
-    colour = given.get("colour", usual.colour)
+    color = given.get("color", usual.color)
     line_type = given.get("line_type", usual.line_type)
     if not isinstance(layer, str) or not _LAYER_NAME.fullmatch(layer):
         raise _refused(path, f"{role}: layer {layer!r}", "1 to 31 of A-Z a-z 0-9 _ $ -")
-    if not isinstance(colour, int) or isinstance(colour, bool) or not 1 <= colour <= 255:
-        raise _refused(path, f"{role}: colour {colour!r}", "a whole number 1 to 255")
+    if not isinstance(color, int) or isinstance(color, bool) or not 1 <= color <= 255:
+        raise _refused(path, f"{role}: color {color!r}", "a whole number 1 to 255")
     if not isinstance(line_type, str) or line_type.upper() not in LINE_TYPES:
         raise _refused(path, f"{role}: line_type {line_type!r}", f"one of {', '.join(LINE_TYPES)}")
-    return LayerStyle(layer, colour, line_type.upper())
+    return LayerStyle(layer, color, line_type.upper())
 
 
 def _refused(path: Path, found: str, limit: str) -> InputError:

@@ -27,7 +27,7 @@ from .drawing import Drawing, draw
 from .layers import Profile, Role, profile_from
 from .paper import LONG, MARGIN, OVERLAP, SHORT, Group, on_paper
 from .plain_text import ascii_text, text_changed
-from .svg import colour_of
+from .svg import color_of
 
 _BAR: Final = 50.0
 _INCH: Final = 25.4
@@ -62,7 +62,7 @@ def pdf_file(
 
     Args:
         pieces: at least one.
-        profile: whose roles and colours are used.
+        profile: whose roles and colors are used.
 
     Raises:
         InputError: no pieces, or an unknown profile.
@@ -166,14 +166,14 @@ def _draw_lines(axes: Any, drawing: Drawing, profile: Profile, scale: float = 1.
         width, dashes = _PENS.get(stroke.role, _PLAIN_PEN)[:2]
         axes.plot(
             *points.T,
-            color=colour_of(style),
+            color=color_of(style),
             linewidth=width * scale,
             linestyle=_pattern(width, dashes),
         )
     for spot in drawing.spots:
         style = profile.styles.get(spot.role)
         if style is not None:
-            axes.plot(*spot.position, marker="o", markersize=3, mfc="none", color=colour_of(style))
+            axes.plot(*spot.position, marker="o", markersize=3, mfc="none", color=color_of(style))
 
 
 def _pattern(width: float, dashes: tuple[float, ...]) -> Any:
@@ -190,7 +190,7 @@ def _draw_labels(axes: Any, drawing: Drawing, profile: Profile, low: Floats, hig
                 *label.position,
                 ascii_text(label.text),
                 fontsize=label.height * _POINTS_PER_MM / 0.73,
-                color=colour_of(style),
+                color=color_of(style),
                 rotation=np.degrees(label.angle),
                 rotation_mode="anchor",
                 clip_on=True,
@@ -260,7 +260,7 @@ def _draw_legend(axes: Any, profile: Profile, top: float) -> None:
         axes.plot(
             (x, x + 20.0),
             (y, y),
-            color=colour_of(profile.styles[role]),
+            color=color_of(profile.styles[role]),
             linewidth=width,
             linestyle=_pattern(width, dashes),
         )

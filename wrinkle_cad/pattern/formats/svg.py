@@ -38,7 +38,7 @@ def svg_bytes(
 
     Args:
         pieces: at least one.
-        profile: whose layers and colours are used; block profiles are drawn as plain lines.
+        profile: whose layers and colors are used; block profiles are drawn as plain lines.
 
     Raises:
         InputError: no pieces, or an unknown profile.
@@ -89,11 +89,11 @@ def write_svg(
     )
 
 
-def colour_of(style: LayerStyle) -> str:
-    """Returns a style's colour as ``#rrggbb``; white on black is black on white here."""
-    if style.colour == 7:
+def color_of(style: LayerStyle) -> str:
+    """Returns a style's color as ``#rrggbb``; white on black is black on white here."""
+    if style.color == 7:
         return "#000000"
-    red, green, blue = aci2rgb(style.colour)
+    red, green, blue = aci2rgb(style.color)
     return f"#{red:02x}{green:02x}{blue:02x}"
 
 
@@ -116,7 +116,7 @@ def _layers(pieces: Sequence[PatternPiece], profile: Profile, left: float, top: 
 
 
 def _element(item: Stroke | Spot | Label, style: LayerStyle, left: float, top: float) -> str:
-    colour = colour_of(style)
+    color = color_of(style)
     if isinstance(item, Label):
         x, y = item.position[0] - left, top - item.position[1]
         # Letters are 0.73 of the font size high.
@@ -125,9 +125,9 @@ def _element(item: Stroke | Spot | Label, style: LayerStyle, left: float, top: f
         return (
             f'<text x="{_number(x)}" y="{_number(y)}"{turned} '
             f'font-size="{_number(item.height / 0.73)}" '
-            f'font-family="sans-serif" fill="{colour}">{_escaped(item.text)}</text>'
+            f'font-family="sans-serif" fill="{color}">{_escaped(item.text)}</text>'
         )
-    pen = f'stroke="{colour}" stroke-width="{_LINE_WIDTH}"'
+    pen = f'stroke="{color}" stroke-width="{_LINE_WIDTH}"'
     if isinstance(item, Spot):
         x, y = item.position[0] - left, top - item.position[1]
         return f'<circle cx="{_number(x)}" cy="{_number(y)}" r="0.5" {pen}/>'
