@@ -17,7 +17,7 @@ import pytest
 from rich.console import Console
 
 from tests.batch.conftest import Bench
-from tests.batch.stand_ins import KINDS, PHASES, chattering_job, job_by_content
+from tests.batch.stand_ins import KINDS, PHASES, job_by_content, talkative_job
 from wrinkle_cad.batch.folder.conversion import ConversionOptions
 from wrinkle_cad.batch.folder.events import BatchSummary, FileFinished, FilePhase, FileSkipped
 from wrinkle_cad.batch.folder.lock import locked_folder
@@ -77,7 +77,7 @@ def test_quiet_prints_failures_only(bench: Bench, capfd: pytest.CaptureFixture[s
 def test_a_machine_gets_json_lines_and_nothing_else(
     bench: Bench, capfd: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    options = partial(ConversionOptions, job_function=chattering_job)
+    options = partial(ConversionOptions, job_function=talkative_job)
     monkeypatch.setattr(batch_screen, "ConversionOptions", options)
     bench.put(a="1", b="fail@read")
     assert batch(bench, "--json-lines") == 1

@@ -3,21 +3,24 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import ClassVar, Final, Literal
-
-import numpy as np
-import numpy.typing as npt
+from typing import TYPE_CHECKING, ClassVar, Final, Literal
 
 from wrinkle_cad import settings
 from wrinkle_cad.errors import InputError
 from wrinkle_cad.options.checking import check_options
 from wrinkle_cad.options.option import option
 
+if TYPE_CHECKING:
+    # Every command line makes its flags of these classes, so arrays are loaded when there are any.
+    from numpy import float64
+    from numpy.typing import NDArray
+
+    Floats = NDArray[float64]
+
 SIDES: Final = ("P", "Q", "start", "end")
 """The sides of a strip in the order of every per-side option."""
 P_SIDE, Q_SIDE, START_SIDE, END_SIDE = range(4)
 
-Floats = npt.NDArray[np.float64]
 PerSide = tuple[float, float, float, float]
 Direction = Literal["along", "across"] | tuple[float, float, float]
 NotchKind = Literal["slit", "v", "t", "castle", "check", "u"]
@@ -285,6 +288,8 @@ class PieceSettings(PieceOptions):
             fold: (k,) rad, positive where the surface is convex as seen along ``p' x (q - p)``.
             turned_over: whether the right side is the one that this normal points away from.
         """
+        import numpy as np
+
         lowest = {"inside": 0.0, "middle": -0.5, "outside": -1.0}[self.surface_side]
         if turned_over:
             lowest = -lowest - 1.0
