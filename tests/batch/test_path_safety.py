@@ -108,7 +108,7 @@ def test_labels_in_real_files_never_become_paths(
     planned = plan_batch(find_sources([str(bench.inputs)], bench.outputs).files, bench.outputs)
     summary = convert(planned, bench.outputs, WorkerCrew(2, CrewLimits()), lambda _: None)
     lines = (bench.outputs / "manifest.jsonl").read_text().splitlines()
-    messages = [json.loads(line)["message"] for line in lines]
+    messages = [json.loads(line)["message"] for line in lines[1:]]
     assert summary.done == len(HOSTILE_LABELS), messages
     stems = {f"strip{number:02d}" for number in range(len(HOSTILE_LABELS))}
     assert set(bench.files()) == {

@@ -181,9 +181,9 @@ def test_names_that_are_no_text_do_no_harm(bench: Bench, capfd: pytest.CaptureFi
 def test_ctrl_c_exits_with_130_and_tells_how_to_resume(bench: Bench) -> None:
     bench.put(a="hang@write")
     code = (
-        "import sys; from functools import partial; from wrinkle_cad import batch_screen as s\n"
+        "import sys; from functools import partial; from wrinkle_cad.cli import batch_screen as s\n"
         "from tests.batch.stand_ins import job_by_content as job\n"
-        "from wrinkle_cad.cli import main\n"
+        "from wrinkle_cad.cli.main import main\n"
         "s.ConversionOptions = partial(s.ConversionOptions, job_function=job)\n"
         "sys.exit(main(sys.argv[1:]))"
     )
@@ -199,8 +199,8 @@ def test_ctrl_c_exits_with_130_and_tells_how_to_resume(bench: Bench) -> None:
         preexec_fn=partial(signal.signal, signal.SIGINT, signal.SIG_DFL),
     )
     assert running.stdout is not None
-    while '"write"' not in running.stdout.readline():
-        pass
+    while '"write"' not in (line := running.stdout.readline()):
+        assert line, "it ended before it wrote"
     begin = time.monotonic()
     os.killpg(running.pid, signal.SIGINT)
     _, err = running.communicate(timeout=10)
@@ -215,9 +215,9 @@ def test_a_terminal_shows_a_live_display(bench: Bench) -> None:
     bench.put(a="1", b="fail@read")
     master, slave = pty.openpty()
     code = (
-        "import sys; from functools import partial; from wrinkle_cad import batch_screen as s\n"
+        "import sys; from functools import partial; from wrinkle_cad.cli import batch_screen as s\n"
         "from tests.batch.stand_ins import job_by_content as job\n"
-        "from wrinkle_cad.cli import main\n"
+        "from wrinkle_cad.cli.main import main\n"
         "s.ConversionOptions = partial(s.ConversionOptions, job_function=job)\n"
         "sys.exit(main(sys.argv[1:]))"
     )

@@ -104,7 +104,7 @@ def test_without_hard_links_old_files_survive_a_failure(
         final.write_bytes(b"old")
     pairs = [(write_aside(final, b"new"), final) for final in finals]
 
-    def no_links(*_: object) -> None:
+    def no_links(*_: object, **__: object) -> None:
         raise OSError(1, "Operation not permitted")
 
     monkeypatch.setattr(os, "link", no_links)

@@ -2,18 +2,35 @@
 
 from __future__ import annotations
 
+import os
+import subprocess
+import sys
 from pathlib import Path
 
 import pytest
 
 from wrinkle_cad.files.staging import (
+    MARK,
+    MARK_NAME,
+    PART_PREFIX,
+    READY_PREFIX,
     RECORD_NAME,
+    clear_abandoned,
     commit_staging,
     discard_staging,
     leftovers,
     move_into_place,
     open_staging,
+    release_staging,
 )
+
+
+def anything(_: Path) -> bool:
+    return True
+
+
+def nothing(_: Path) -> bool:
+    return False
 
 
 def stage(folder: Path) -> Path:
@@ -28,7 +45,7 @@ def test_nothing_has_a_final_name_before_the_commit_and_everything_after_the_mov
 ) -> None:
     ready = commit_staging(stage(tmp_path), "record")
     assert not list(tmp_path.glob("a.*"))
-    move_into_place(ready)
+    move_into_place(ready, anything)
     assert {path.name: path.read_text() for path in tmp_path.iterdir()} == {
         "a.step": "step",
         "a.dxf": "dxf",
@@ -37,15 +54,16 @@ def test_nothing_has_a_final_name_before_the_commit_and_everything_after_the_mov
 
 def test_earlier_outputs_are_replaced(tmp_path: Path) -> None:
     (tmp_path / "a.step").write_text("old")
-    move_into_place(commit_staging(stage(tmp_path), ""))
+    move_into_place(commit_staging(stage(tmp_path), ""), anything)
     assert (tmp_path / "a.step").read_text() == "step"
 
 
 def test_an_interrupted_move_can_be_finished(tmp_path: Path) -> None:
     ready = commit_staging(stage(tmp_path), "record")
     (ready / "a.dxf").rename(tmp_path / "a.dxf")
+    release_staging(ready)
     assert list(leftovers(tmp_path)) == [(ready, "record")]
-    move_into_place(ready)
+    move_into_place(ready, anything)
     assert sorted(path.name for path in tmp_path.iterdir()) == ["a.dxf", "a.step"]
 
 
@@ -54,26 +72,92 @@ def test_a_move_that_lost_only_its_last_step_can_be_finished(tmp_path: Path) -> 
     for name in ("a.dxf", "a.step"):
         (ready / name).rename(tmp_path / name)
     (ready / RECORD_NAME).unlink()
+    release_staging(ready)
     assert list(leftovers(tmp_path)) == [(ready, "")]
-    move_into_place(ready)
+    move_into_place(ready, anything)
     assert not list(leftovers(tmp_path))
 
 
 def test_leftovers_are_found_in_every_folder_and_only_ours(tmp_path: Path) -> None:
     deep = stage(tmp_path / "x" / "y")
     (tmp_path / ".git").mkdir()
+    assert not list(leftovers(tmp_path)), "it is in use"
+    release_staging(deep)
     assert list(leftovers(tmp_path)) == [(deep, None)]
     discard_staging(deep)
     assert not list(leftovers(tmp_path))
     assert (tmp_path / ".git").is_dir()
 
 
-def test_a_name_that_a_folder_has_keeps_the_committed_files(tmp_path: Path) -> None:
+def test_a_name_that_a_folder_has_leaves_every_name_as_it_was(tmp_path: Path) -> None:
     (tmp_path / "a.step").mkdir()
+    (tmp_path / "a.dxf").write_text("old")
     ready = commit_staging(stage(tmp_path), "record")
-    with pytest.raises(OSError, match="step"):
-        move_into_place(ready)
-    assert (ready / "a.step").read_text() == "step"
+    with pytest.raises(IsADirectoryError):
+        move_into_place(ready, anything)
+    assert (tmp_path / "a.dxf").read_text() == "old"
+    assert not list((tmp_path / "a.step").iterdir())
+
+
+def test_a_file_that_is_not_ours_keeps_its_name_and_nothing_moves(tmp_path: Path) -> None:
+    (tmp_path / "a.step").write_text("somebody's")
+    ready = commit_staging(stage(tmp_path), "record")
+    with pytest.raises(FileExistsError):
+        move_into_place(ready, nothing)
+    assert (tmp_path / "a.step").read_text() == "somebody's"
+    assert not (tmp_path / "a.dxf").exists()
+
+
+def test_a_file_that_appears_during_the_move_is_kept(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    ready = commit_staging(stage(tmp_path), "record")
+    real = os.link
+
+    def race(source: Path, target: Path, **keywords: bool) -> None:
+        if Path(target).name == "a.step":
+            Path(target).write_text("somebody's")
+        real(source, target, **keywords)
+
+    monkeypatch.setattr(os, "link", race)
+    with pytest.raises(FileExistsError):
+        move_into_place(ready, anything)
+    assert (tmp_path / "a.step").read_text() == "somebody's"
+    assert not (tmp_path / "a.dxf").exists()
+
+
+@pytest.mark.parametrize("prefix", [PART_PREFIX, READY_PREFIX])
+def test_a_folder_of_that_name_without_our_mark_is_nobodys_leftover(
+    tmp_path: Path, prefix: str
+) -> None:
+    planted = tmp_path / f"{prefix}x"
+    planted.mkdir()
+    (planted / "a.step").write_text("somebody's")
+    assert not list(leftovers(tmp_path))
+    (planted / MARK_NAME).write_text("some mark")
+    assert not list(leftovers(tmp_path))
+    (planted / MARK_NAME).unlink()
+    os.mkfifo(planted / MARK_NAME)
+    assert not list(leftovers(tmp_path))
+    elsewhere = tmp_path / "elsewhere"
+    elsewhere.mkdir()
+    (elsewhere / MARK_NAME).write_bytes(MARK)
+    (tmp_path / f"{prefix}link").symlink_to(elsewhere)
+    assert not list(leftovers(tmp_path))
+
+
+def test_what_a_killed_process_left_is_cleared_and_what_runs_is_not(tmp_path: Path) -> None:
+    mine = open_staging(tmp_path)
+    code = (
+        "import os, sys; from pathlib import Path; from wrinkle_cad.files.staging import *;"
+        "path = open_staging(Path(sys.argv[1])); (path / 'half.step').write_text('x');"
+        "os.kill(os.getpid(), 9)"
+    )
+    ended = subprocess.run([sys.executable, "-c", code, str(tmp_path)], check=False)
+    assert ended.returncode == -9
+    assert len(list(tmp_path.iterdir())) == 2
+    clear_abandoned(tmp_path)
+    assert list(tmp_path.iterdir()) == [mine]
 
 
 def test_two_jobs_in_one_folder_do_not_meet(tmp_path: Path) -> None:

@@ -8,9 +8,10 @@ start with ``.`` and end in ``.part``.
 from __future__ import annotations
 
 import contextlib
+import errno
 import os
 import secrets
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from pathlib import Path
 from typing import Final
 
@@ -57,17 +58,27 @@ def write_aside(path: Path, content: bytes) -> Path:
     return part
 
 
-def replace_together(pairs: Iterable[tuple[Path, Path]]) -> None:
+def replace_together(
+    pairs: Iterable[tuple[Path, Path]],
+    *,
+    may_replace: Callable[[Path], bool] | None = None,
+    is_resumed: bool = False,
+) -> None:
     """Renames files written aside to their final names, all of them or none.
 
-    What stood under a final name is kept beside it until every file is in place. If one rename
-    fails, all that happened is undone and the temporary files are removed. A crash in the middle
-    leaves whole files only, some of them from before; the kept ones end in ``.kept``.
+    What stood under a final name is kept beside the temporary file until every file is in place. If
+    one rename fails, all that happened is undone and the temporary files are removed. A crash in
+    the middle leaves whole files only, some of them from before; the kept ones end in ``.kept``.
 
     Args:
-        pairs: ``(temporary, final)``, each pair in one folder, final names distinct.
+        pairs: ``(temporary, final)``, both on one file system, final names distinct.
+        may_replace: asked about each file under a final name, right before it is replaced; all may
+            be when None. A file that appears after that is not replaced either.
+        is_resumed: whether an interrupted call (Ctrl-C) leaves the rest for a later one, instead of
+            undoing what it did.
 
     Raises:
+        FileExistsError: a final name is held by what may not be replaced.
         OSError: a rename failed; every final name holds what it held before.
         ValueError: two pairs have the same final name.
     """
@@ -79,14 +90,39 @@ def replace_together(pairs: Iterable[tuple[Path, Path]]) -> None:
     kept: dict[Path, Path | None] = {}
     try:
         for part, final in todo:
-            kept[final] = _keep(final) if len(todo) > 1 else None
-            part.replace(final)
-    except BaseException:
+            is_free = not os.path.lexists(final)
+            if not is_free and may_replace is not None and not may_replace(final):
+                raise FileExistsError(errno.EEXIST, "a file of somebody else is there", str(final))
+            if final.is_dir() and not final.is_symlink():
+                raise IsADirectoryError(errno.EISDIR, os.strerror(errno.EISDIR), str(final))
+            kept[final] = None if is_free or len(todo) == 1 else _keep(final, part)
+            if is_free and may_replace is not None:
+                _take_free_name(part, final)
+            else:
+                part.replace(final)
+    except Exception:
         _undo(todo, kept)
+        raise
+    except BaseException:
+        if not is_resumed:
+            _undo(todo, kept)
         raise
     _remove(backup for backup in kept.values() if backup is not None)
     for folder in sorted({final.parent for final in finals}):
         _flush_folder(folder)
+
+
+def _take_free_name(part: Path, final: Path) -> None:
+    """Gives a file a name that nothing has; nothing is replaced that appears meanwhile."""
+    try:
+        os.link(part, final)
+    except FileExistsError:
+        raise
+    except OSError:
+        # File systems without hard links (FAT, some network shares).
+        part.rename(final)
+    else:
+        part.unlink()
 
 
 def _beside(path: Path, suffix: str) -> Path:
@@ -94,13 +130,11 @@ def _beside(path: Path, suffix: str) -> Path:
     return path.with_name(f".{secrets.token_hex(8)}{suffix}")
 
 
-def _keep(final: Path) -> Path | None:
-    """Gives what stands under a final name a second name, or returns None if nothing does."""
-    if not final.exists():
-        return None
-    backup = _beside(final, _BACKUP_SUFFIX)
+def _keep(final: Path, part: Path) -> Path:
+    """Gives what stands under a final name a second name, beside the file that replaces it."""
+    backup = _beside(part, _BACKUP_SUFFIX)
     try:
-        os.link(final, backup)
+        os.link(final, backup, follow_symlinks=False)
     except OSError:
         # File systems without hard links (FAT, some network shares).
         final.replace(backup)
@@ -109,12 +143,12 @@ def _keep(final: Path) -> Path | None:
 
 def _undo(todo: list[tuple[Path, Path]], kept: dict[Path, Path | None]) -> None:
     for part, final in todo:
-        is_replaced = final in kept and not part.exists()
+        is_moved = final in kept and not part.exists()
         backup = kept.get(final)
         if backup is not None:
             backup.replace(final)
             backup.unlink(missing_ok=True)
-        elif is_replaced and len(todo) > 1:
+        elif is_moved and len(todo) > 1:
             final.unlink(missing_ok=True)
         part.unlink(missing_ok=True)
 

@@ -4,31 +4,50 @@ A job works in a hidden folder beside its final names. When everything in it is 
 folder is renamed; that rename is the commit. Moving the files to their names comes after it, and
 whoever finds a committed folder (after a crash) finishes the move. Before the commit there is
 nothing.
+
+A hidden folder is ours by the mark inside it, not by its name, and in use as long as a process
+holds the mark's lock, which ends with the process, however that ends.
 """
 
 from __future__ import annotations
 
+import contextlib
 import os
 import shutil
+import stat
 import tempfile
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from typing import Final
 
+from .atomic import replace_together
+from .regular import read_regular
+
 PART_PREFIX: Final = ".wrinkle_cad-part-"
 READY_PREFIX: Final = ".wrinkle_cad-ready-"
 RECORD_NAME: Final = ".record.json"
+MARK_NAME: Final = ".mark"
+MARK: Final = b"wrinkle_cad: files under way, removed when the job ends\n"
+
+_RECORD_LIMIT: Final = 1 << 20
+_held: dict[Path, int] = {}
+"""The open mark of each folder of this process: its lock ends when it is closed."""
 
 
 def open_staging(folder: Path) -> Path:
-    """Makes an empty hidden folder for one job inside the folder of its outputs.
+    """Makes a hidden folder for one job inside the folder of its outputs, empty but for its mark.
 
     Raises:
         OSError: the folder cannot be made or written to.
     """
     folder.mkdir(parents=True, exist_ok=True)
-    return Path(tempfile.mkdtemp(prefix=PART_PREFIX, dir=folder))
+    staging = Path(tempfile.mkdtemp(prefix=PART_PREFIX, dir=folder))
+    handle = os.open(staging / MARK_NAME, os.O_RDWR | os.O_CREAT | os.O_EXCL | _CLOSED, 0o600)
+    _lock(handle)
+    os.write(handle, MARK)
+    _held[staging] = handle
+    return staging
 
 
 def commit_staging(staging: Path, record_line: str) -> Path:
@@ -52,40 +71,83 @@ def commit_staging(staging: Path, record_line: str) -> Path:
     ready = staging.with_name(READY_PREFIX + staging.name.removeprefix(PART_PREFIX))
     # Not flushed: a power cut that undoes the rename leaves a job to be done again, no more.
     staging.rename(ready)
+    if staging in _held:
+        _held[ready] = _held.pop(staging)
     return ready
 
 
-def move_into_place(ready: Path) -> None:
+def staged_files(staging: Path) -> list[Path]:
+    """The outputs in a hidden folder, by name, without what is kept beside them (hidden, too)."""
+    return [path for path in sorted(staging.iterdir()) if not path.name.startswith(".")]
+
+
+def move_into_place(ready: Path, may_replace: Callable[[Path], bool]) -> None:
     """Moves the files of a committed folder to their final names beside it; safe to do again.
 
+    Args:
+        ready: the committed folder; gone when this returns.
+        may_replace: whether a file that has one of the names is ours to replace.
+
     Raises:
-        OSError: a name cannot be taken (a folder has it); the committed folder stays for later.
+        OSError: a name cannot be taken, or somebody else's file has it; every name holds what it
+            held before, and the committed folder is what is left of it.
     """
-    for path in sorted(ready.iterdir()):
-        if path.name != RECORD_NAME:
-            path.replace(ready.parent / path.name)
+    pairs = [(path, ready.parent / path.name) for path in staged_files(ready)]
+    replace_together(pairs, may_replace=may_replace, is_resumed=True)
     # Not flushed: a power cut that undoes moves leaves a committed folder to be moved again.
-    (ready / RECORD_NAME).unlink(missing_ok=True)
-    ready.rmdir()
+    discard_staging(ready)
 
 
 def discard_staging(staging: Path) -> None:
     """Removes a staging folder and what a job left in it; nothing happens when it is gone."""
-    shutil.rmtree(staging, ignore_errors=True)
+    # The mark goes last: a folder that loses it half-way would be nobody's.
+    with contextlib.suppress(OSError):
+        for path in staging.iterdir():
+            if path.name == MARK_NAME:
+                continue
+            if path.is_dir() and not path.is_symlink():
+                shutil.rmtree(path, ignore_errors=True)
+            else:
+                path.unlink()
+        (staging / MARK_NAME).unlink(missing_ok=True)
+        staging.rmdir()
+    release_staging(staging)
 
 
-def leftovers(folder: Path) -> Iterator[tuple[Path, str | None]]:
-    """Finds what a killed batch left in and below a folder; links are not followed.
+def release_staging(staging: Path) -> None:
+    """Leaves a hidden folder, as it is, to whoever looks for leftovers."""
+    handle = _held.pop(staging, None)
+    if handle is not None:
+        os.close(handle)
+
+
+def leftovers(folder: Path, *, below: bool = True) -> Iterator[tuple[Path, str | None]]:
+    """Finds what killed processes left in a folder; links are not followed.
+
+    Args:
+        folder: where outputs go.
+        below: whether the folders in it are searched too.
 
     Yields:
         ``(path, None)`` for a folder that was never committed, ``(path, record line)`` for a
-        committed one that was not moved in full.
+        committed one that was not moved in full. Folders without our mark, of another user, or
+        still in use are nobody's leftovers.
     """
     for root, folders, _ in os.walk(folder):
         for name in [name for name in folders if name.startswith((PART_PREFIX, READY_PREFIX))]:
             folders.remove(name)
             path = Path(root, name)
-            yield path, _record_line(path) if name.startswith(READY_PREFIX) else None
+            if _is_abandoned(path):
+                yield path, _record_line(path) if name.startswith(READY_PREFIX) else None
+        if not below:
+            return
+
+
+def clear_abandoned(folder: Path) -> None:
+    """Removes uncommitted hidden folders that killed processes left right in a folder."""
+    for path, record in list(leftovers(folder, below=False)):
+        if record is None:
+            discard_staging(path)
 
 
 def flush_files(folder: Path, names: Sequence[str]) -> None:
@@ -106,10 +168,48 @@ def flush_folder(folder: Path) -> None:
         _flush(folder, os.O_RDONLY | os.O_DIRECTORY)
 
 
+_CLOSED: Final = getattr(os, "O_CLOEXEC", 0) | getattr(os, "O_NOFOLLOW", 0)
+
+
+def _lock(handle: int) -> bool:
+    """Whether this process has the lock of an open file now; True where there are no locks."""
+    try:
+        import fcntl
+    except ImportError:
+        return False
+    try:
+        fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except OSError:
+        return False
+    return True
+
+
+def _is_abandoned(staging: Path) -> bool:
+    if staging in _held:
+        return False
+    try:
+        found = staging.lstat()
+        if not stat.S_ISDIR(found.st_mode) or found.st_uid != os.geteuid():
+            return False
+        handle = os.open(staging / MARK_NAME, os.O_RDONLY | os.O_NONBLOCK | _CLOSED)
+    except FileNotFoundError:
+        # Killed before it was marked: nothing is in it, or it is not ours.
+        return not any(staging.iterdir())
+    except OSError:
+        return False
+    try:
+        is_ours = stat.S_ISREG(os.fstat(handle).st_mode) and os.read(handle, len(MARK) + 1) == MARK
+        return is_ours and _lock(handle)
+    except OSError:
+        return False
+    finally:
+        os.close(handle)
+
+
 def _record_line(ready: Path) -> str:
     try:
-        return (ready / RECORD_NAME).read_text(encoding="ascii")
-    except FileNotFoundError:
+        return read_regular(ready / RECORD_NAME, size_limit=_RECORD_LIMIT).decode("ascii")
+    except (OSError, UnicodeDecodeError):
         # The record goes last, after every file is in place.
         return ""
 

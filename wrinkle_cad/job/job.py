@@ -6,15 +6,15 @@ themselves stand in the classes that ``Job`` joins, one place for each.
 
 from __future__ import annotations
 
-import tomllib
 from collections.abc import Mapping
 from dataclasses import dataclass, field, fields
 from pathlib import Path
 from typing import Any, Final
 
 from wrinkle_cad.cad.upper.options import WaveSettings, check_waves
-from wrinkle_cad.errors import JobError
+from wrinkle_cad.errors import InputError, JobError
 from wrinkle_cad.files.names import split_name
+from wrinkle_cad.files.toml import read_toml
 from wrinkle_cad.options.checking import check_known, check_options
 from wrinkle_cad.options.option import option, options_of
 from wrinkle_cad.pattern.piece.options import PieceOptions, check_piece
@@ -112,11 +112,9 @@ def read_job_toml(path: Path) -> dict[str, Any]:
         JobError: not TOML, or an unknown key.
     """
     try:
-        table = tomllib.loads(path.read_text(encoding="utf-8"))
-    except (OSError, UnicodeDecodeError, tomllib.TOMLDecodeError) as error:
-        raise JobError(
-            f"{path.name} cannot be read as TOML ({error}): correct the file."
-        ) from error
+        table = read_toml(path)
+    except InputError as error:
+        raise JobError(str(error)) from error
     _check_known(table, path.name)
     for name, value in table.items():
         setting = options_of(Job)[name]

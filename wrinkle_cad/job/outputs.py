@@ -2,17 +2,17 @@
 
 from __future__ import annotations
 
-import hashlib
 import json
-import shutil
-import tempfile
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any, Final
 
+from wrinkle_cad import settings
 from wrinkle_cad.errors import ExportError, JobError
 from wrinkle_cad.files.atomic import replace_together
+from wrinkle_cad.files.regular import hash_regular, is_regular, read_regular
+from wrinkle_cad.files.staging import discard_staging, open_staging
 
 from .job import Job
 
@@ -21,7 +21,6 @@ SCHEMA_VERSION: Final = 1
 PAGE_MARK: Final = '<meta name="generator" content="wrinkle_cad'
 
 _SCHEMAS: Final = "wrinkle_cad/"
-_HASH_CHUNK: Final = 1 << 20
 
 
 def output_paths(job: Job, kinds: tuple[str, ...]) -> dict[str, Path]:
@@ -29,13 +28,19 @@ def output_paths(job: Job, kinds: tuple[str, ...]) -> dict[str, Path]:
     return {kind: job.output_dir / f"{job.name}.{kind}" for kind in kinds}
 
 
-def check_outputs_are_ours(job: Job, kinds: tuple[str, ...]) -> None:
+def check_outputs_are_ours(
+    job: Job, kinds: tuple[str, ...], *, is_ours: Callable[[Path], bool] | None = None
+) -> None:
     """Raises a ``JobError`` when an output would replace the input or a file of somebody else.
 
-    A JSON file is ours by its schema, a page by its generator; any other file when NAME.json lists
-    it with the hash that it has.
+    Args:
+        job: its output folder and name are looked at.
+        kinds: endings of the outputs.
+        is_ours: whether an existing file is ours to replace; as `ownership_of` says when None. A
+            JSON file is ours by its schema, a page by its generator; any other file when NAME.json
+            lists it with the hash that it has.
     """
-    listed = _listed_outputs(job.output_dir / f"{job.name}.json")
+    is_ours = is_ours or ownership_of(job.output_dir, job.name)
     for path in output_paths(job, kinds).values():
         if not path.exists() and not path.is_symlink():
             continue
@@ -44,7 +49,7 @@ def check_outputs_are_ours(job: Job, kinds: tuple[str, ...]) -> None:
                 f"Output {path.name} would replace the input {job.input.name}: give another folder"
                 " (-o DIR) or another --name."
             )
-        if not _is_ours(path, listed):
+        if not is_ours(path):
             raise JobError(
                 f"Output {path.name} cannot be written: a file of that name is there and was not"
                 " written by this program, or was changed since. Only own outputs are replaced:"
@@ -52,10 +57,16 @@ def check_outputs_are_ours(job: Job, kinds: tuple[str, ...]) -> None:
             )
 
 
+def ownership_of(folder: Path, name: str) -> Callable[[Path], bool]:
+    """Returns the test whether a file is an output of this program under a stem, as it wrote it."""
+    listed = _listed_outputs(folder / f"{name}.json")
+    return lambda path: _is_ours(path, listed)
+
+
 def hashes_of(paths: Mapping[str, Path]) -> dict[str, dict[str, Any]]:
     """Size and SHA-256 of files, by their kind."""
     return {
-        kind: {"file": path.name, "bytes": path.stat().st_size, "sha256": _sha256(path)}
+        kind: {"file": path.name, "bytes": path.stat().st_size, "sha256": hash_regular(path)}
         for kind, path in paths.items()
     }
 
@@ -70,8 +81,7 @@ def outputs_together(job: Job, kinds: tuple[str, ...]) -> Iterator[dict[str, Pat
         ExportError: the output folder cannot be written; nothing was changed.
     """
     try:
-        job.output_dir.mkdir(parents=True, exist_ok=True)
-        aside = Path(tempfile.mkdtemp(prefix=".wrinkle_cad-", dir=job.output_dir))
+        aside = open_staging(job.output_dir)
     except OSError as error:
         message = f"{error.strerror or error}. Give a folder that can be written with -o DIR."
         raise ExportError(job.output_dir, "folder", message) from error
@@ -79,40 +89,51 @@ def outputs_together(job: Job, kinds: tuple[str, ...]) -> Iterator[dict[str, Pat
         written = {kind: aside / f"{job.name}.{kind}" for kind in kinds}
         yield written
         finals = output_paths(job, kinds)
-        replace_together([(written[kind], finals[kind]) for kind in kinds])
+        pairs = [(written[kind], finals[kind]) for kind in kinds]
+        try:
+            # Asked again: a file may have appeared while the job ran.
+            replace_together(pairs, may_replace=ownership_of(job.output_dir, job.name))
+        except FileExistsError as error:
+            name = Path(error.filename2 or error.filename).name
+            raise ExportError(
+                job.output_dir / name,
+                "output",
+                "a file of somebody else got that name meanwhile - it is kept, nothing was written"
+                " - move it away or give another -o DIR",
+            ) from error
     finally:
-        shutil.rmtree(aside, ignore_errors=True)
+        discard_staging(aside)
 
 
 def _listed_outputs(json_path: Path) -> dict[str, Any]:
     listed = _own_json(json_path).get("outputs", {})
-    return {entry["file"]: entry["sha256"] for entry in listed.values()}
+    entries = listed.values() if isinstance(listed, dict) else ()
+    return {
+        str(entry.get("file")): entry.get("sha256") for entry in entries if isinstance(entry, dict)
+    }
 
 
 def _own_json(path: Path) -> dict[str, Any]:
     """What a JSON file of this program holds; nothing if it is not one."""
     try:
-        content = json.loads(path.read_text(encoding="utf-8"))
-    except (OSError, UnicodeDecodeError, json.JSONDecodeError):
+        content = json.loads(read_regular(path, size_limit=settings.JSON_SIZE_LIMIT))
+    except (OSError, ValueError, RecursionError):
+        # No regular file, no JSON, or such as only somebody else writes: a number of 5,000 digits.
         return {}
     is_ours = isinstance(content, dict) and str(content.get("schema")).startswith(_SCHEMAS)
     return content if is_ours else {}
 
 
 def _is_ours(path: Path, listed: Mapping[str, Any]) -> bool:
-    if not path.is_file():
+    if not is_regular(path):
+        # A link is not ours either: we never make one.
         return False
     if path.suffix == ".json":
         return bool(_own_json(path))
-    if path.suffix == ".html":
-        # The page shows seconds, so its hash is not in the JSON.
-        return PAGE_MARK in path.read_text(encoding="utf-8", errors="replace")
-    return path.name in listed and listed[path.name] == _sha256(path)
-
-
-def _sha256(path: Path) -> str:
-    digest = hashlib.sha256()
-    with path.open("rb") as file:
-        while chunk := file.read(_HASH_CHUNK):
-            digest.update(chunk)
-    return digest.hexdigest()
+    try:
+        if path.suffix == ".html":
+            # The page shows seconds, so its hash is not in the JSON.
+            return PAGE_MARK.encode() in read_regular(path, size_limit=settings.JSON_SIZE_LIMIT)
+        return path.name in listed and listed[path.name] == hash_regular(path)
+    except OSError:
+        return False

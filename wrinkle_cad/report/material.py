@@ -22,10 +22,12 @@ from pathlib import Path
 from typing import Any, Final
 
 from wrinkle_cad.errors import InputError
+from wrinkle_cad.files.toml import read_toml
 
 _TEXTS: Final = ("name", "source")
 _FOLDER: Final = "materials"
 _LISTED: Final = 40
+_LARGEST: Final = 1e6
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -77,7 +79,7 @@ def find_material(name_or_file: str) -> Material:
 @cache
 def packaged_materials() -> tuple[Material, ...]:
     """Returns the materials that come with the package, by name."""
-    found = [_material_of(text, name) for name, text in _packaged_texts()]
+    found = [_material_of(tomllib.loads(text), name) for name, text in _packaged_texts()]
     return tuple(sorted(found, key=lambda material: material.name.casefold()))
 
 
@@ -88,13 +90,10 @@ def read_material(path: Path) -> Material:
         InputError: not TOML, an unknown or a missing key, or a value out of its range.
     """
     try:
-        text = path.read_text(encoding="utf-8")
-    except (OSError, UnicodeDecodeError) as error:
-        why = getattr(error, "strerror", None) or error
-        raise InputError(
-            f"The material {path.name} cannot be read ({why}). Correct the file."
-        ) from error
-    return _material_of(text, path.name)
+        table = read_toml(path)
+    except InputError as error:
+        raise InputError(f"The material {error}") from error
+    return _material_of(table, path.name)
 
 
 def _packaged_texts() -> Iterator[tuple[str, str]]:
@@ -103,13 +102,7 @@ def _packaged_texts() -> Iterator[tuple[str, str]]:
             yield entry.name, entry.read_text(encoding="utf-8")
 
 
-def _material_of(text: str, file: str) -> Material:
-    try:
-        table = tomllib.loads(text)
-    except tomllib.TOMLDecodeError as error:
-        raise InputError(
-            f"The material {file} cannot be read as TOML ({error}). Correct the file."
-        ) from error
+def _material_of(table: dict[str, Any], file: str) -> Material:
     known = [field.name for field in fields(Material)]
     for key, value in table.items():
         if key not in known:
@@ -132,7 +125,9 @@ def _material_of(text: str, file: str) -> Material:
 
 def _check_number(file: str, key: str, value: Any) -> None:
     is_number = isinstance(value, int | float) and not isinstance(value, bool)
-    if not is_number or not math.isfinite(value) or value < 0.0:
+    # An integer of 400 digits is no float.
+    if not is_number or not 0.0 <= value < math.inf or value > _LARGEST:
         raise InputError(
-            f"The material {file} has {key} = {value!r}. Give a finite number of at least 0."
+            f"The material {file} has {key} = {str(value)[:_LISTED]}. Give a number from 0 to"
+            f" {_LARGEST:g}."
         )

@@ -30,7 +30,8 @@ def test_a_second_run_does_only_what_is_missing_changed_or_failed(bench: Bench) 
     assert counts(bench.run()) == (4, 1, 0)
     bench.put(b="changed", f="new")
     (bench.outputs / "c.dxf").unlink()
-    (bench.outputs / "d.dxf").write_text("truncated")
+    (bench.outputs / "d.dxf").unlink()
+    (bench.outputs / "d.step").unlink()
     assert counts(bench.run()) == (4, 1, 1)
     redone = {event.label for event in bench.events if isinstance(event, FileFinished)}
     assert redone == {"b.step", "c.step", "d.step", "e.step", "f.step"}
@@ -70,7 +71,8 @@ def test_force_does_everything_again(bench: Bench) -> None:
 def test_the_manifest_records_what_was_done(bench: Bench) -> None:
     bench.put(a="1", b="raise@write")
     bench.run()
-    lines = (bench.outputs / "manifest.jsonl").read_text().splitlines()
+    mark, *lines = (bench.outputs / "manifest.jsonl").read_text().splitlines()
+    assert json.loads(mark) == {"schema": "wrinkle_cad/batch", "version": 1}
     done, failed = sorted((json.loads(line) for line in lines), key=lambda entry: entry["key"])
     assert len(done["input_sha256"]) == len(done["settings_sha256"]) == 64
     assert done["versions"]["wrinkle-cad"]
@@ -80,13 +82,32 @@ def test_the_manifest_records_what_was_done(bench: Bench) -> None:
     assert (failed["outcome"], failed["phase"]) == ("failed", "write")
 
 
-def test_a_failure_keeps_the_outputs_of_an_earlier_run(bench: Bench) -> None:
+def test_outputs_of_a_file_that_fails_now_are_there_but_nobody_cuts_them(bench: Bench) -> None:
     bench.put(a="1")
     bench.run()
     before = bench.files()
     bench.put(a="SIGKILL@page")
     bench.run()
-    assert bench.files() == before
+    assert bench.files() == {f"{name}.outdated": content for name, content in before.items()}
+    bench.run()
+    assert len(bench.files()) == len(KINDS)
+    bench.put(a="2")
+    assert counts(bench.run()) == (1, 0, 0)
+    assert set(bench.files()) == {f"a.{kind}" for kind in KINDS}
+
+
+def test_an_output_that_was_changed_since_is_kept_and_costs_its_file(bench: Bench) -> None:
+    bench.put(a="1", b="2")
+    bench.run()
+    (bench.outputs / "a.dxf").write_text("edited by hand")
+    bench.put(a="changed")
+    assert counts(bench.run()) == (0, 1, 1)
+    assert bench.files()["a.dxf"] == b"edited by hand"
+    (event,) = [event for event in bench.events if isinstance(event, FileFinished)]
+    assert "a.dxf" in event.record.message
+    bench.put(a="fail@read")
+    bench.run()
+    assert bench.files()["a.dxf"] == b"edited by hand"
 
 
 def test_outputs_that_are_not_written_again_go(bench: Bench) -> None:
@@ -162,14 +183,14 @@ def test_a_folder_in_use_is_refused(bench: Bench) -> None:
 def test_an_unreadable_input_costs_itself(bench: Bench, monkeypatch: pytest.MonkeyPatch) -> None:
     from wrinkle_cad.batch.folder import conversion
 
-    real = conversion.hash_file
+    real = conversion.hash_regular
 
-    def refuse(path: Path) -> str:
+    def refuse(path: Path, **limits: int) -> str:
         if path.name == "a.step" and path.parent == bench.inputs:
             raise OSError(errno.EIO, os.strerror(errno.EIO))
-        return real(path)
+        return real(path, **limits)
 
-    monkeypatch.setattr(conversion, "hash_file", refuse)
+    monkeypatch.setattr(conversion, "hash_regular", refuse)
     bench.put(a="1", b="2")
     assert counts(bench.run()) == (1, 1, 0)
 
@@ -235,7 +256,7 @@ class _with_room:  # noqa: N801 - reads as a function
             )
 
 
-@pytest.mark.parametrize("step", ["commit_staging", "_check_foreign"])
+@pytest.mark.parametrize("step", ["commit_staging", "check_outputs_are_ours"])
 def test_a_commit_that_fails_costs_one_file(
     bench: Bench, monkeypatch: pytest.MonkeyPatch, step: str
 ) -> None:
@@ -243,10 +264,10 @@ def test_a_commit_that_fails_costs_one_file(
     real: Callable[..., object] = getattr(delivery, step)
     calls = iter([True, False])
 
-    def fail_once(*arguments: object) -> object:
+    def fail_once(*arguments: object, **keywords: object) -> object:
         if next(calls):
             raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
-        return real(*arguments)
+        return real(*arguments, **keywords)
 
     monkeypatch.setattr(delivery, step, fail_once)
     assert counts(bench.run()) == (1, 1, 0)
@@ -278,15 +299,15 @@ def test_a_move_that_stops_half_way_is_finished_by_the_next_run(
     bench: Bench, monkeypatch: pytest.MonkeyPatch, moment: int
 ) -> None:
     bench.put(a="1")
-    real = Path.replace
+    real = os.link
     moves = iter(range(100))
 
-    def stop(self: Path, target: Path) -> Path:
-        if next(moves) == moment:
+    def stop(source: Path, target: Path, **keywords: bool) -> None:
+        if Path(target).name.startswith("a.") and next(moves) == moment:
             raise KeyboardInterrupt
-        return real(self, target)
+        real(source, target, **keywords)
 
-    monkeypatch.setattr(Path, "replace", stop)
+    monkeypatch.setattr(os, "link", stop)
     with pytest.raises(KeyboardInterrupt):
         bench.run()
     monkeypatch.undo()

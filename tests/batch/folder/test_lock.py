@@ -40,7 +40,7 @@ def test_a_second_batch_is_refused_until_the_first_is_gone(tmp_path: Path) -> No
 
 
 def test_a_lock_file_that_was_left_behind_holds_nothing(tmp_path: Path) -> None:
-    (tmp_path / LOCK_NAME).write_text("999999999")
+    (tmp_path / LOCK_NAME).write_text("wrinkle_cad lock, process 999999999\n")
     with locked_folder(tmp_path):
         held = (tmp_path / LOCK_NAME).read_text()
     assert "999999999" not in held

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import contextlib
 import time
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -11,9 +12,10 @@ from wrinkle_cad import settings
 from wrinkle_cad.batch.executor import run_tasks
 from wrinkle_cad.batch.workers.crew import Crew, Finished, Phase
 from wrinkle_cad.batch.workers.task import JobFunction, Task, TaskResult
-from wrinkle_cad.errors import ExportError
+from wrinkle_cad.errors import ExportError, WrinkleError
 from wrinkle_cad.files.names import printable
-from wrinkle_cad.files.staging import discard_staging, leftovers, move_into_place, open_staging
+from wrinkle_cad.files.regular import hash_regular, read_regular
+from wrinkle_cad.files.staging import discard_staging, open_staging
 from wrinkle_cad.job.job import Job
 from wrinkle_cad.job.outcome import JobDone, JobFailed
 from wrinkle_cad.job.versions import installed_versions
@@ -21,13 +23,15 @@ from wrinkle_cad.job.versions import installed_versions
 from .delivery import deliver, failed_record
 from .disk_space import check_disk_space
 from .events import BatchStarted, BatchSummary, FileFinished, FilePhase, FileSkipped, Listener
-from .fingerprint import hash_file, hash_settings
-from .index_page import write_index_page
+from .fingerprint import hash_settings
+from .inputs import Source
 from .journal import Journal
 from .lock import locked_folder
-from .manifest import Manifest, Record, record_from_line
+from .manifest import WAITING, Manifest, Record
+from .ownership import check_own_files, remove_stale, set_outdated
+from .pages import Pages
 from .plan import PlannedJob
-from .summary import write_summary_table
+from .recovery import recover
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -61,14 +65,16 @@ def convert(
         options: how to go about it.
 
     Raises:
-        InputError: another batch holds the folder.
+        InputError: another batch holds the folder, or somebody else's file has the name of one of
+            the batch's own files.
         ExportError: the folder cannot be written to, or its disk is full before anything began.
     """
     try:
         try:
             folder.mkdir(parents=True, exist_ok=True)
             with locked_folder(folder):
-                return _Conversion(planned, folder, crew, listener, options).run()
+                set_aside = check_own_files(folder)
+                return _Conversion(planned, folder, crew, listener, options).run(set_aside)
         except BrokenPipeError:
             # The listener's: whoever read our lines went away.
             raise
@@ -88,7 +94,7 @@ def base_record(entry: PlannedJob, versions: Mapping[str, str]) -> Record:
     return Record(
         key=entry.key,
         input=entry.source.label,
-        input_sha256=hash_file(entry.source.path),
+        input_sha256=hash_regular(entry.source.path, size_limit=settings.FILE_SIZE_LIMIT),
         settings_sha256=hash_settings(entry.job, versions),
         outcome="",
         versions=dict(versions),
@@ -107,11 +113,31 @@ def is_up_to_date(earlier: Record | None, base: Record, folder: Path) -> bool:
     try:
         return all(
             (target / file.name).stat().st_size == file.bytes
-            and hash_file(target / file.name) == file.sha256
+            and hash_regular(target / file.name) == file.sha256
             for file in earlier.outputs
         )
     except OSError:
         return False
+
+
+def trouble_of(source: Source, error: Exception) -> str:
+    """One sentence for an error about one file that no code foresaw."""
+    said = printable(" ".join(str(error).split())[:200]) or "no message"
+    return (
+        f"{source.label} cannot be planned ({type(error).__name__}: {said}). Its name, its settings"
+        " or its earlier outputs hold something unheard of: look at its job.toml and at NAME.json."
+    )
+
+
+def _blank_record(entry: PlannedJob, outcome: str, versions: Mapping[str, str]) -> Record:
+    return Record(
+        key=entry.key,
+        input=entry.source.label,
+        input_sha256="",
+        settings_sha256="",
+        outcome=outcome,
+        versions=dict(versions),
+    )
 
 
 class _Conversion:
@@ -134,32 +160,44 @@ class _Conversion:
         self._journal = Journal(folder)
         self._manifest = Manifest(folder)
         self._under_way: dict[int, tuple[Path, Record]] = {}
+        self._pages = Pages(folder)
+        self._start = time.monotonic()
         self._counts = {"done": 0, "failed": 0, "skipped": 0, "missed": 0, "strict": 0}
         self._records: dict[int, Record] = {}
         self._stopped_by = ""
 
-    def run(self) -> BatchSummary:
-        start = time.monotonic()
+    def run(self, set_aside: str) -> BatchSummary:
         check_disk_space(self._folder, least_mib=self._options.least_disk_mib)
-        self._clear_leftovers()
+        if set_aside:
+            self._journal.write(
+                f"the manifest was damaged: it is {set_aside} now, a new one begins"
+            )
+        recover(self._folder, self._manifest, self._journal.write)
         self._journal.write(f"batch of {len(self._planned)} files begins; {self._versions}")
         if self._manifest.torn_lines:
             self._journal.write(f"manifest: {self._manifest.torn_lines} unreadable lines left out")
         self._tell(BatchStarted(len(self._planned)))
+        self._pages.write(*self._state())
         try:
             self._work()
-        finally:
-            for staging, _ in self._under_way.values():
-                discard_staging(staging)
-        summary = self._summary(time.monotonic() - start)
+        except BaseException:
+            self._give_up()
+            raise
+        records, summary = self._state(is_over=True)
         self._journal.write(
             f"batch ends: {summary.done} done, {summary.failed} failed, {summary.skipped} skipped,"
             f" {summary.left} left, {summary.seconds:.1f} s {summary.stopped_by}"
         )
-        records = [record for _, record in sorted(self._records.items())]
-        write_summary_table(self._folder, records)
-        write_index_page(self._folder, records, summary)
+        self._pages.write(records, summary)
         return summary
+
+    def _give_up(self) -> None:
+        """Leaves the folder in order when the batch is interrupted or cannot go on."""
+        for staging, _ in self._under_way.values():
+            discard_staging(staging)
+        self._stopped_by = self._stopped_by or "interrupted"
+        with contextlib.suppress(OSError, WrinkleError):
+            self._pages.write(*self._state(is_over=True))
 
     def _work(self) -> None:
         for event in run_tasks(self._crew, self._tasks()):
@@ -168,6 +206,7 @@ class _Conversion:
                 self._tell(FilePhase(label, event.name, event.done, event.total))
             elif isinstance(event, Finished):
                 self._finish(event.key, event.result)
+            self._pages.write_if_due(self._state)
         self._crew.close()
 
     def _tasks(self) -> Iterator[tuple[int, Task] | None]:
@@ -186,17 +225,17 @@ class _Conversion:
             self._refuse(key, "plan", "JobError", entry.refusal)
             return None
         try:
-            base = base_record(entry, self._versions)
-            earlier = self._manifest.latest(base.key, base.input)
-            if not self._options.force and is_up_to_date(earlier, base, self._folder):
-                assert earlier is not None
-                self._skip(key, earlier)
-                return None
-            content = entry.source.path.read_bytes() if self._options.ship_bytes else None
+            base, done, content = self._looked_up(entry)
         except OSError as error:
             culprit = printable(Path(error.filename or entry.source.path).name)
             message = f"read {culprit} - {error.strerror} - a file that can be read - correct it"
             self._refuse(key, "read", type(error).__name__, message)
+            return None
+        except Exception as error:
+            self._refuse(key, "plan", type(error).__name__, trouble_of(entry.source, error))
+            return None
+        if done is not None:
+            self._skip(key, done)
             return None
         try:
             staging = open_staging(entry.job.output_dir)
@@ -210,6 +249,16 @@ class _Conversion:
         self._under_way[key] = (staging, base)
         return self._task(entry.job, staging, content)
 
+    def _looked_up(self, entry: PlannedJob) -> tuple[Record, Record | None, bytes | None]:
+        """A file's record to complete, its earlier record if that still holds, its content."""
+        base = base_record(entry, self._versions)
+        earlier = self._manifest.latest(base.key, base.input)
+        if not self._options.force and is_up_to_date(earlier, base, self._folder):
+            return base, earlier, None
+        if not self._options.ship_bytes:
+            return base, None, None
+        return base, None, read_regular(entry.source.path, size_limit=settings.FILE_SIZE_LIMIT)
+
     def _task(self, job: Job, staging: Path, content: bytes | None) -> Task:
         return Task(
             job=replace(job, output_dir=staging.absolute()),
@@ -222,12 +271,13 @@ class _Conversion:
         entry = self._planned[key]
         staging, base = self._under_way.pop(key)
         known = self._manifest.outputs_of(entry.key)
+        earlier = self._manifest.latest(base.key, base.input)
         outcome = deliver(
             entry.job,
             staging,
             result,
             base=base,
-            known_outputs=known,
+            known=known,
             on_commit=self._manifest.append,
         )
         record = self._manifest.latest(base.key, base.input) or base
@@ -236,29 +286,28 @@ class _Conversion:
             record = failed_record(base, outcome)
             self._manifest.append(record)
         if isinstance(outcome, JobDone):
-            self._remove_stale(entry, known, record)
+            for name in remove_stale(entry.job.output_dir, record, known):
+                self._journal.write(f"{record.input}: {name} is not as it was written: kept")
+        else:
+            self._set_outdated(earlier)
         self._count(key, record, outcome.trace if isinstance(outcome, JobFailed) else "")
 
-    def _remove_stale(self, entry: PlannedJob, known: Iterable[str], record: Record) -> None:
-        """Removes outputs of an earlier run that this one did not write again."""
-        current = {file.name for file in record.outputs}
-        for name in known:
-            if name not in current and Path(name).name == name:
-                (entry.job.output_dir / name).unlink(missing_ok=True)
+    def _set_outdated(self, earlier: Record | None) -> None:
+        """Marks outputs of an earlier run, so that nobody cuts by them what now fails."""
+        if earlier is None:
+            return
+        known = self._manifest.outputs_of(earlier.key)
+        for name in set_outdated((self._folder / earlier.key).parent, earlier, known):
+            self._journal.write(f"{earlier.input}: fails now; its earlier output is {name}")
 
     def _refuse(self, key: int, phase: str, error: str, message: str) -> None:
         entry = self._planned[key]
-        blank = Record(
-            key=entry.key,
-            input=entry.source.label,
-            input_sha256="",
-            settings_sha256="",
-            outcome="",
-            versions=dict(self._versions),
-        )
+        blank = _blank_record(entry, "", self._versions)
         failure = JobFailed(job=entry.job, phase=phase, error=error, message=message)
         record = failed_record(blank, failure)
+        earlier = self._manifest.latest(record.key, record.input)
         self._manifest.append(record)
+        self._set_outdated(earlier)
         self._count(key, record, "")
 
     def _skip(self, key: int, record: Record) -> None:
@@ -281,23 +330,15 @@ class _Conversion:
         self._counts["missed"] += is_missed
         self._counts["strict"] += is_missed and self._planned[key].job.strict
 
-    def _clear_leftovers(self) -> None:
-        """Finishes what a killed batch had committed and removes what it had not."""
-        for path, line in list(leftovers(self._folder)):
-            if line is None:
-                discard_staging(path)
-                self._journal.write("removed what an earlier batch left unfinished")
-                continue
-            record = record_from_line(line)
-            if record is not None and self._manifest.latest(record.key, record.input) != record:
-                self._manifest.append(record)
-            move_into_place(path)
-            self._journal.write("put in place what an earlier batch had finished")
-
-    def _summary(self, seconds: float) -> BatchSummary:
+    def _state(self, *, is_over: bool = False) -> tuple[list[Record], BatchSummary]:
+        """What is known of every file, and the numbers."""
         counts = self._counts
         settled = counts["done"] + counts["failed"] + counts["skipped"]
-        return BatchSummary(
+        records = [
+            self._records.get(key) or _blank_record(entry, WAITING, self._versions)
+            for key, entry in enumerate(self._planned)
+        ]
+        return records, BatchSummary(
             folder=self._folder,
             done=counts["done"],
             failed=counts["failed"],
@@ -305,6 +346,7 @@ class _Conversion:
             left=len(self._planned) - settled,
             missed_limits=counts["missed"],
             strict_misses=counts["strict"],
-            seconds=seconds,
+            seconds=time.monotonic() - self._start,
             stopped_by=self._stopped_by,
+            is_over=is_over,
         )

@@ -3,21 +3,29 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import replace
 from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any, Final
 
 from wrinkle_cad.batch.workers.task import TaskResult
-from wrinkle_cad.errors import WrinkleError
+from wrinkle_cad.errors import JobError, WrinkleError
 from wrinkle_cad.files.names import printable
-from wrinkle_cad.files.staging import commit_staging, discard_staging, flush_files, move_into_place
+from wrinkle_cad.files.staging import (
+    commit_staging,
+    discard_staging,
+    flush_files,
+    move_into_place,
+    release_staging,
+    staged_files,
+)
 from wrinkle_cad.job.job import Job
 from wrinkle_cad.job.outcome import JobDone, JobFailed
 from wrinkle_cad.job.outputs import check_outputs_are_ours
 
-from .manifest import OutputFile, Record, record_to_line
+from .manifest import Record, is_plain_name, record_to_line
+from .ownership import Hashes, may_replace
 
 _SUMS: Final = ("interior_bridges", "invalid_bridges", "inflection_bridges")
 _SUMMED_MEASURES: Final = ("area_3d_mm2", "area_pattern_mm2")
@@ -31,7 +39,7 @@ def deliver(
     result: TaskResult,
     *,
     base: Record | None = None,
-    known_outputs: Iterable[str] = (),
+    known: Hashes | None = None,
     on_commit: Callable[[Record], None] | None = None,
 ) -> JobDone | JobFailed:
     """Gives the outputs of a task their final names, all together or, after a failure, none.
@@ -41,7 +49,7 @@ def deliver(
         staging: the folder in which the task worked; gone when this returns.
         result: what came of the task.
         base: the record to complete and keep with the files; none is kept when None.
-        known_outputs: names of files that are ours to replace whatever they hold now.
+        known: what earlier batches wrote under these names, ours to replace as long as it is that.
         on_commit: called with the complete record once the outcome is certain.
 
     Returns:
@@ -53,9 +61,12 @@ def deliver(
     outcome = result.outcome
     record = base
     ready = None
+    is_ours = may_replace(job.output_dir, job.name, known or {})
     if isinstance(outcome, JobDone):
         try:
-            _check_foreign(job, result.outputs, frozenset(known_outputs))
+            _check_names(job, result)
+            kinds = tuple(file.name.removeprefix(f"{job.name}.") for file in result.outputs)
+            check_outputs_are_ours(job, kinds, is_ours=is_ours)
             _unpack(staging, result.output_bytes)
             flush_files(staging, [file.name for file in result.outputs])
             record = None if base is None else _done_record(base, result, outcome)
@@ -66,15 +77,28 @@ def deliver(
     if isinstance(outcome, JobFailed):
         discard_staging(staging)
         record = None if base is None else failed_record(base, outcome)
-    if record is not None and on_commit is not None:
-        on_commit(record)
-    if ready is None or isinstance(outcome, JobFailed):
-        return replace(outcome, job=job)
     try:
-        move_into_place(ready)
+        if record is not None and on_commit is not None:
+            on_commit(record)
+        if ready is None or isinstance(outcome, JobFailed):
+            return replace(outcome, job=job)
+        return _moved(job, outcome, ready, is_ours)
+    finally:
+        if ready is not None:
+            # What was committed and could not be moved is the next batch's to finish.
+            release_staging(ready)
+
+
+def _moved(
+    job: Job, outcome: JobDone, ready: Path, is_ours: Callable[[Path], bool]
+) -> JobDone | JobFailed:
+    names = [path.name for path in staged_files(ready)]
+    try:
+        move_into_place(ready, is_ours)
     except OSError as error:
+        discard_staging(ready)
         return _write_failure(job, outcome, error)
-    paths = tuple(job.output_dir / file.name for file in result.outputs)
+    paths = tuple(job.output_dir / name for name in names)
     return replace(outcome, job=job, outputs=paths)
 
 
@@ -133,10 +157,16 @@ def _done_record(base: Record, result: TaskResult, outcome: JobDone) -> Record:
     )
 
 
-def _check_foreign(job: Job, outputs: Iterable[OutputFile], known: frozenset[str]) -> None:
-    unknown = [file.name for file in outputs if file.name not in known]
+def _check_names(job: Job, result: TaskResult) -> None:
+    """Checks what came back from a worker, which may be a stranger's: its names lead nowhere."""
     prefix = f"{job.name}."
-    check_outputs_are_ours(job, tuple(name.removeprefix(prefix) for name in unknown))
+    names = {file.name for file in result.outputs}
+    for name in (*names, *result.output_bytes):
+        if not is_plain_name(name) or not name.startswith(prefix) or name not in names:
+            raise JobError(
+                f"worker - named the output {printable(str(name))} - names begin with"
+                f" {printable(prefix)} - look at who runs the workers"
+            )
 
 
 def _unpack(staging: Path, content: Mapping[str, bytes]) -> None:

@@ -77,3 +77,5 @@ class BatchSummary:
     """Wall-clock seconds."""
     stopped_by: str = ""
     """Why files are left, on one line."""
+    is_over: bool = True
+    """Whether the batch has ended; False on a page that is written under way."""

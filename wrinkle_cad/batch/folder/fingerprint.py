@@ -1,4 +1,4 @@
-"""Hashes of files and settings: what decides whether a file must be done again."""
+"""The hash of a job's settings: what decides, with its input's, whether it must be done again."""
 
 from __future__ import annotations
 
@@ -9,23 +9,10 @@ from dataclasses import fields
 from pathlib import Path
 from typing import Any, Final
 
+from wrinkle_cad.files.regular import hash_regular
 from wrinkle_cad.job.job import Job
 
-_CHUNK: Final = 1 << 20
 _NOT_A_SETTING: Final = frozenset({"input", "output_dir"})
-
-
-def hash_file(path: Path) -> str:
-    """SHA-256 of a file's content, in hexadecimal.
-
-    Raises:
-        OSError: it cannot be read.
-    """
-    digest = hashlib.sha256()
-    with path.open("rb") as stream:
-        while chunk := stream.read(_CHUNK):
-            digest.update(chunk)
-    return digest.hexdigest()
 
 
 def hash_settings(job: Job, versions: Mapping[str, str]) -> str:
@@ -44,11 +31,12 @@ def hash_settings(job: Job, versions: Mapping[str, str]) -> str:
     values: dict[str, Any] = {"input": job.input.name, "versions": dict(versions)}
     for field in fields(job):
         if field.name not in _NOT_A_SETTING:
-            values[field.name] = _plain(getattr(job, field.name))
+            value = getattr(job, field.name)
+            is_file = field.name == "profile" and value.lower().endswith(".toml")
+            values[field.name] = _plain(Path(value) if is_file else value)
     text = json.dumps(values, sort_keys=True, ensure_ascii=True, default=str)
     return hashlib.sha256(text.encode("ascii")).hexdigest()
 
 
 def _plain(value: Any) -> Any:
-    is_file = isinstance(value, Path) or (isinstance(value, str) and value.endswith(".toml"))
-    return {"file": hash_file(Path(value))} if is_file else value
+    return {"file": hash_regular(value)} if isinstance(value, Path) else value

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import base64
+import hashlib
 import html
 import math
 from collections.abc import Sequence
@@ -9,11 +11,11 @@ from pathlib import Path, PurePosixPath
 from typing import Final
 from urllib.parse import quote
 
-from wrinkle_cad.files.atomic import write_atomically
 from wrinkle_cad.files.names import printable
+from wrinkle_cad.files.own import write_own
 
 from .events import BatchSummary
-from .manifest import Record
+from .manifest import WAITING, Record
 from .summary import total_seconds
 
 PAGE_NAME: Final = "index.html"
@@ -22,6 +24,8 @@ _PAGE: Final = """<!doctype html>
 <html lang="en"><head><meta charset="utf-8">
 <meta name="viewport" content="width=device-width, initial-scale=1">
 <meta name="generator" content="wrinkle_cad batch">
+<meta http-equiv="Content-Security-Policy" content="default-src 'none'; base-uri 'none';
+ form-action 'none'; style-src 'unsafe-inline'; script-src 'sha256-{script_hash}'">
 <title>wrinkle_cad batch</title>
 <style>
 :root {{ color-scheme: light dark; font: 15px/1.45 system-ui, sans-serif; }}
@@ -63,6 +67,11 @@ document.querySelectorAll("th button").forEach(function (button) {{
 }});
 </script></body></html>
 """
+_SCRIPT: Final = _PAGE.partition("<script>")[2].partition("</script>")[0].format()
+_SCRIPT_HASH: Final = base64.b64encode(hashlib.sha256(_SCRIPT.encode()).digest()).decode("ascii")
+"""The only script that a browser may run there, whatever a name smuggles in."""
+BEGINNINGS: Final = (_PAGE[: _PAGE.index('batch">')].encode("ascii"),)
+"""What a page begins with: its generator's name is in it."""
 _HEADER: Final = (
     "file",
     "state",
@@ -81,9 +90,11 @@ def write_index_page(folder: Path, records: Sequence[Record], summary: BatchSumm
     """Writes the page: most developable files first, failed ones last, ties by name.
 
     Raises:
+        JobError: a file of somebody else has its name.
         OSError: it cannot be written; an earlier page stays.
     """
-    write_atomically(folder / PAGE_NAME, index_page(records, summary).encode("utf-8"))
+    page = index_page(records, summary).encode("utf-8", "backslashreplace")
+    write_own(folder / PAGE_NAME, page, BEGINNINGS)
 
 
 def index_page(records: Sequence[Record], summary: BatchSummary) -> str:
@@ -95,9 +106,12 @@ def index_page(records: Sequence[Record], summary: BatchSummary) -> str:
     )
     if summary.missed_limits:
         counts += f" {summary.missed_limits} miss a limit."
+    if not summary.is_over:
+        counts = f"Under way. {counts}"
     if summary.stopped_by:
         counts += f" Stopped: {printable(summary.stopped_by)}."
     return _PAGE.format(
+        script_hash=_SCRIPT_HASH,
         counts=html.escape(counts),
         header="".join(
             f'<th scope="col"><button type="button">{html.escape(title)}</button></th>'
@@ -154,6 +168,8 @@ def _number(record: Record, name: str, form: str) -> str:
 
 
 def _outcome(record: Record) -> str:
+    if record.outcome == WAITING:
+        return _cell("not come to", WAITING)
     if not record.is_done:
         text = html.escape(printable(f"failed: {record.message}"))
         return _cell(f'<span class="failed">{text}</span>', "failed")

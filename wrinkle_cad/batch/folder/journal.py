@@ -7,8 +7,11 @@ from pathlib import Path
 from typing import Final
 
 from wrinkle_cad.files.names import printable
+from wrinkle_cad.files.own import append_own
 
 LOG_NAME: Final = "batch.log"
+BEGINNINGS: Final = (b"wrinkle_cad batch log, times in UTC\n",)
+"""What a log begins with."""
 
 
 class Journal:
@@ -25,17 +28,21 @@ class Journal:
         """Adds a line with the time in UTC; line breaks in the text become escapes.
 
         Raises:
+            JobError: a file of somebody else has taken its name.
             OSError: the disk is full.
         """
         now = datetime.now(UTC).isoformat(timespec="seconds")
-        with self.path.open("a", encoding="utf-8") as stream:
-            stream.write(f"{now} {printable(text)}\n")
+        self._add(f"{now} {printable(text)}\n")
 
     def write_detail(self, text: str) -> None:
         """Adds the lines of a text (a traceback, what a crashed kernel printed), indented.
 
         Raises:
+            JobError: a file of somebody else has taken its name.
             OSError: the disk is full.
         """
-        with self.path.open("a", encoding="utf-8") as stream:
-            stream.writelines(f"    {printable(line)}\n" for line in text.splitlines())
+        if text:
+            self._add("".join(f"    {printable(line)}\n" for line in text.splitlines()))
+
+    def _add(self, lines: str) -> None:
+        append_own(self.path, lines.encode("utf-8", "backslashreplace"), BEGINNINGS)

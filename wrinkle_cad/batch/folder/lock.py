@@ -9,8 +9,11 @@ from pathlib import Path
 from typing import Final
 
 from wrinkle_cad.errors import InputError
+from wrinkle_cad.files.names import printable
+from wrinkle_cad.files.own import open_own
 
 LOCK_NAME: Final = ".wrinkle_cad.lock"
+_BEGINNING: Final = b"wrinkle_cad lock, process "
 
 
 @contextmanager
@@ -21,7 +24,8 @@ def locked_folder(folder: Path) -> Iterator[None]:
         folder: an existing folder that can be written to.
 
     Raises:
-        InputError: another process holds it, or the system has no such locks (Windows).
+        InputError: another process holds it, the system has no such locks (Windows), or somebody
+            else's file has the lock's name.
         OSError: the lock file cannot be made.
     """
     try:
@@ -31,18 +35,19 @@ def locked_folder(folder: Path) -> Iterator[None]:
             "batch - this system has no POSIX file locks - Linux or macOS is needed - use run for"
             " each file, or run_batch with an executor of your own"
         ) from error
-    handle = os.open(folder / LOCK_NAME, os.O_RDWR | os.O_CREAT | os.O_CLOEXEC, 0o644)
+    handle = open_own(folder / LOCK_NAME, [_BEGINNING])
     try:
         try:
             fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
         except BlockingIOError as error:
-            holder = os.read(handle, 100).decode("ascii", "replace").strip() or "unknown"
+            said = os.read(handle, 100).removeprefix(_BEGINNING).decode("ascii", "replace")
+            holder = printable(said.strip()) or "unknown"
             raise InputError(
                 f"output folder {folder.name} - another batch is writing to it (process {holder}) -"
                 " one at a time - wait for it or give another -o DIR"
             ) from error
         os.ftruncate(handle, 0)
-        os.write(handle, f"{os.getpid()}\n".encode("ascii"))
+        os.write(handle, _BEGINNING + f"{os.getpid()}\n".encode("ascii"))
         # The file stays: removing it would let a third process lock a new file of that name
         # while a second one still waits on the old.
         yield

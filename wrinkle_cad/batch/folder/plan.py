@@ -14,12 +14,14 @@ from wrinkle_cad.files.names import (
     apply_mask,
     check_mask,
     collision_key,
+    printable,
     safe_folder,
     safe_name,
     split_name,
 )
 from wrinkle_cad.job.job import Job, make_job, read_job_toml
 
+from .index_page import PAGE_NAME
 from .inputs import Source
 
 FOLDER_TOML: Final = "job.toml"
@@ -108,9 +110,14 @@ def _plan_one(
             default_name = safe_name(str(own["name"]))
         merged = {**own, **layers.flags, "name": default_name, "output_dir": target}
         job = make_job(source.path, merged)
-    except JobError as error:
-        refusal = refusal or str(error)
+    except Exception as error:
+        refusal = refusal or _line_of(error, source)
         job = Job(input=source.path, name=default_name, output_dir=target)
+    if not refusal and folder == PurePosixPath() and default_name == Path(PAGE_NAME).stem:
+        refusal = (
+            f"The outputs would be called {default_name}, and {PAGE_NAME} is the batch's own page."
+            ' Give another name, for example with --name "{stem}-{suffix}".'
+        )
     if not refusal and not target.resolve().is_relative_to(output_dir.resolve()):
         refusal = (
             f"output folder {folder} - a link that leads out of {output_dir.name} - outputs stay"
@@ -118,6 +125,17 @@ def _plan_one(
         )
     key = (folder / default_name).as_posix()
     return PlannedJob(source=source, key=key, job=job, refusal=refusal)
+
+
+def _line_of(error: Exception, source: Source) -> str:
+    """Why settings cannot be used: our own sentence, or what no code foresaw in one line."""
+    if isinstance(error, JobError):
+        return str(error)
+    said = printable(" ".join(str(error).split())[:200]) or "no message"
+    return (
+        f"The settings of {source.label} cannot be used ({type(error).__name__}: {said})."
+        f" Look at {FOLDER_TOML} and {FILE_TOML} beside it."
+    )
 
 
 def _unreadable_name(source: Source) -> str:

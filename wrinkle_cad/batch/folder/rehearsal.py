@@ -5,10 +5,12 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 
+from wrinkle_cad.errors import InputError
+from wrinkle_cad.files.names import printable
 from wrinkle_cad.job.versions import installed_versions
 
-from .conversion import base_record, is_up_to_date
-from .manifest import Manifest
+from .conversion import base_record, is_up_to_date, trouble_of
+from .manifest import MANIFEST_NAME, Manifest
 from .plan import PlannedJob
 
 DONE_BEFORE = "done before"
@@ -29,9 +31,15 @@ def rehearse(
         The planned file, and `TO_DO`, `DONE_BEFORE` or why it cannot be done.
 
     Raises:
-        OSError: there is a manifest that cannot be read.
+        InputError: there is a manifest that cannot be read.
     """
-    manifest = Manifest(folder)
+    try:
+        manifest = Manifest(folder)
+    except OSError as error:
+        raise InputError(
+            f"{MANIFEST_NAME} in {printable(folder.name)} {error.strerror}. It cannot be resumed"
+            " from: move it away or give another -o DIR."
+        ) from error
     versions = installed_versions()
     for entry in planned:
         if entry.refusal:
@@ -39,9 +47,12 @@ def rehearse(
             continue
         try:
             base = base_record(entry, versions)
+            earlier = manifest.latest(base.key, base.input)
+            is_done = not force and is_up_to_date(earlier, base, folder)
         except OSError as error:
             yield entry, f"{entry.source.label} - {error.strerror} - a file that can be read"
             continue
-        earlier = manifest.latest(base.key, base.input)
-        is_done = not force and is_up_to_date(earlier, base, folder)
+        except Exception as error:
+            yield entry, trouble_of(entry.source, error)
+            continue
         yield entry, DONE_BEFORE if is_done else TO_DO

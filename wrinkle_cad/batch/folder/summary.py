@@ -8,8 +8,8 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any, Final
 
-from wrinkle_cad.files.atomic import write_atomically
 from wrinkle_cad.files.names import printable
+from wrinkle_cad.files.own import write_own
 
 from .manifest import Record
 
@@ -44,6 +44,9 @@ _HEADER: Final = (
     "error",
     "message",
 )
+BEGINNINGS: Final = ((",".join(_HEADER[:3]) + ",").encode("utf-8-sig"),)
+"""What a table begins with."""
+
 _FORMULA_STARTS: Final = ("=", "+", "-", "@", "\t", "\r", "\uff1d", "\uff0b", "\uff0d", "\uff20")
 
 
@@ -51,13 +54,14 @@ def write_summary_table(folder: Path, records: Sequence[Record]) -> None:
     """Writes the table, one row per record, in UTF-8 with the mark that spreadsheets look for.
 
     Raises:
+        JobError: a file of somebody else has its name.
         OSError: it cannot be written; an earlier table stays.
     """
     text = io.StringIO(newline="")
     writer = csv.writer(text, lineterminator="\r\n")
     writer.writerow(_HEADER)
     writer.writerows([safe_cell(value) for value in _row(record)] for record in records)
-    write_atomically(folder / TABLE_NAME, text.getvalue().encode("utf-8-sig"))
+    write_own(folder / TABLE_NAME, text.getvalue().encode("utf-8-sig"), BEGINNINGS)
 
 
 def safe_cell(value: Any) -> Any:

@@ -8,9 +8,9 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Final
 
-from wrinkle_cad.batch.folder.fingerprint import hash_file
 from wrinkle_cad.batch.folder.manifest import OutputFile
 from wrinkle_cad.errors import JobError
+from wrinkle_cad.files.regular import hash_regular
 from wrinkle_cad.job.job import Job
 from wrinkle_cad.job.outcome import JobDone, JobFailed, Progress
 from wrinkle_cad.job.versions import installed_versions
@@ -75,7 +75,7 @@ def _run_in_place(task: Task, progress: Progress | None) -> TaskResult:
         return TaskResult(outcome=outcome)
     folder = task.job.output_dir
     paths = [folder / path.name for path in outcome.outputs]
-    files = tuple(OutputFile(path.name, path.stat().st_size, hash_file(path)) for path in paths)
+    files = tuple(OutputFile(path.name, path.stat().st_size, hash_regular(path)) for path in paths)
     return TaskResult(outcome=outcome, outputs=files)
 
 

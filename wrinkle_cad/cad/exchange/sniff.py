@@ -8,7 +8,6 @@ bytes are in memory before the kernel's 0.7 s import begins.
 from __future__ import annotations
 
 import re
-import stat
 import zlib
 from dataclasses import dataclass
 from pathlib import Path
@@ -16,6 +15,7 @@ from typing import Final
 
 from wrinkle_cad import settings
 from wrinkle_cad.errors import InputError
+from wrinkle_cad.files.regular import IrregularFileError, read_regular
 
 STEP: Final = "STEP"
 BREP: Final = "BREP"
@@ -94,19 +94,14 @@ def read_source(path: Path, *, size_limit: int = settings.FILE_SIZE_LIMIT) -> So
 
 def _read(path: Path, size_limit: int) -> bytes:
     try:
-        found = path.stat()
-        if found.st_size > size_limit:
-            raise _too_large(path, f"{found.st_size / 2**20:.1f} MiB", size_limit)
-        if not stat.S_ISREG(found.st_mode):
-            what = "a directory" if stat.S_ISDIR(found.st_mode) else "not a regular file"
-            raise InputError(f"Cannot read {path.name}: {what}. Name a STEP, BREP or IGES file.")
-        with path.open("rb") as stream:
-            return stream.read(size_limit)
-    except (OSError, ValueError) as error:
-        if isinstance(error, InputError):
-            raise
-        reason = getattr(error, "strerror", None) or str(error)
-        raise InputError(f"Cannot read {path.name}: {reason}. Check the path.") from error
+        return read_regular(path, size_limit=size_limit)
+    except OSError as error:
+        reason = error.strerror or str(error)
+        raise InputError(
+            f"Cannot read {path.name}: it {reason}. Name a STEP, BREP or IGES file that can be read."
+            if isinstance(error, IrregularFileError)
+            else f"Cannot read {path.name}: {reason}. Check the path."
+        ) from error
 
 
 def _too_large(path: Path, found: str, size_limit: int) -> InputError:

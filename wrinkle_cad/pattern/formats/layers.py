@@ -8,7 +8,6 @@ has no line types, so mountains and valleys differ in color only, and a text say
 from __future__ import annotations
 
 import re
-import tomllib
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -16,6 +15,7 @@ from types import MappingProxyType
 from typing import Final, Literal
 
 from wrinkle_cad.errors import InputError
+from wrinkle_cad.files.toml import read_toml
 
 Role = Literal[
     "cut", "sew", "notch", "mark", "grain", "stretch", "mountain", "valley", "punch", "text",
@@ -126,11 +126,9 @@ def profile_from(source: str | Path) -> Profile:
             "- choose one"
         )
     try:
-        content = tomllib.loads(path.read_text(encoding="utf-8"))
-    except OSError as error:
-        raise InputError(f"profile {path.name} - {error.strerror} - a file - check path") from error
-    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
-        raise InputError(f"profile {path.name} - {error} - TOML in UTF-8 - correct it") from error
+        content = read_toml(path)
+    except InputError as error:
+        raise InputError(f"profile {error}") from error
     return _parsed(content, path)
 
 
