@@ -18,7 +18,6 @@ from wrinkle_cad.files.staging import (
     flush_files,
     move_into_place,
     release_staging,
-    staged_files,
 )
 from wrinkle_cad.job.job import Job
 from wrinkle_cad.job.outcome import JobDone, JobFailed
@@ -82,7 +81,7 @@ def deliver(
             on_commit(record)
         if ready is None or isinstance(outcome, JobFailed):
             return replace(outcome, job=job)
-        return _moved(job, outcome, ready, is_ours)
+        return _moved(job, replace(outcome, outputs=_paths(job, result)), ready, is_ours)
     finally:
         if ready is not None:
             # What was committed and could not be moved is the next batch's to finish.
@@ -92,14 +91,16 @@ def deliver(
 def _moved(
     job: Job, outcome: JobDone, ready: Path, is_ours: Callable[[Path], bool]
 ) -> JobDone | JobFailed:
-    names = [path.name for path in staged_files(ready)]
     try:
         move_into_place(ready, is_ours)
     except OSError as error:
         discard_staging(ready)
         return _write_failure(job, outcome, error)
-    paths = tuple(job.output_dir / name for name in names)
-    return replace(outcome, job=job, outputs=paths)
+    return replace(outcome, job=job)
+
+
+def _paths(job: Job, result: TaskResult) -> tuple[Path, ...]:
+    return tuple(job.output_dir / file.name for file in result.outputs)
 
 
 def failed_record(base: Record, failure: JobFailed) -> Record:
