@@ -236,21 +236,6 @@ CROSSING_COSINE: Final = 0.9999
 FILE_SIZE_LIMIT: Final = 256 * 2**20
 """Bytes; the largest file, packed or unpacked, that is handed to the CAD kernel."""
 
-HASHED_SIZE_LIMIT: Final = 16 * 2**30
-"""Bytes; no file is hashed that is larger."""
-
-TOML_SIZE_LIMIT: Final = 2**20
-"""Bytes; the largest file of settings, of a material or of layers that is read."""
-
-JSON_SIZE_LIMIT: Final = 64 * 2**20
-"""Bytes; the largest file that is read to tell whether it is one of our JSON files or pages."""
-
-BATCH_PAGE_INTERVAL_S: Final = 10.0
-"""Seconds after which a batch under way writes its table and its page again."""
-
-FILE_STALL_S: Final = 10.0
-"""Seconds without a byte after which the reading of a file is given up."""
-
 SNIFFED_BYTES: Final = 2**16
 """How far into a file its format is looked for; comments may stand before the mark."""
 

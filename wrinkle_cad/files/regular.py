@@ -17,9 +17,12 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any, Final, TypeVar
 
-from wrinkle_cad import settings
-
 T = TypeVar("T")
+
+STALL_S: Final = 10.0
+"""Seconds without a byte after which the reading of a file is given up."""
+HASHED_SIZE_LIMIT: Final = 16 * 2**30
+"""Bytes; no file is hashed that is larger."""
 
 _CHUNK: Final = 1 << 20
 _READ: Final = os.O_RDONLY | getattr(os, "O_CLOEXEC", 0) | getattr(os, "O_BINARY", 0)
@@ -34,7 +37,7 @@ class IrregularFileError(OSError):
         super().__init__(errno.EINVAL, reason, str(path))
 
 
-def read_regular(path: Path, *, size_limit: int, stall_s: float = settings.FILE_STALL_S) -> bytes:
+def read_regular(path: Path, *, size_limit: int, stall_s: float = STALL_S) -> bytes:
     """Returns the content of a regular file.
 
     Args:
@@ -56,8 +59,8 @@ def read_regular(path: Path, *, size_limit: int, stall_s: float = settings.FILE_
 def hash_regular(
     path: Path,
     *,
-    size_limit: int = settings.HASHED_SIZE_LIMIT,
-    stall_s: float = settings.FILE_STALL_S,
+    size_limit: int = HASHED_SIZE_LIMIT,
+    stall_s: float = STALL_S,
 ) -> str:
     """Returns the SHA-256 of a regular file's content, in hexadecimal.
 

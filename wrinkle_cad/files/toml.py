@@ -4,13 +4,15 @@ from __future__ import annotations
 
 import tomllib
 from pathlib import Path
-from typing import Any
+from typing import Any, Final
 
-from wrinkle_cad import settings
 from wrinkle_cad.errors import InputError
 
 from .names import printable
 from .regular import read_regular
+
+SIZE_LIMIT: Final = 2**20
+"""Bytes; the largest file of settings, of a material or of layers that is read."""
 
 
 def read_toml(path: Path) -> dict[str, Any]:
@@ -20,7 +22,7 @@ def read_toml(path: Path) -> dict[str, Any]:
         InputError: there is no regular file of sane size, or it is no TOML.
     """
     try:
-        content = read_regular(path, size_limit=settings.TOML_SIZE_LIMIT)
+        content = read_regular(path, size_limit=SIZE_LIMIT)
         return tomllib.loads(content.decode("utf-8"))
     except RecursionError as error:
         raise _unreadable(path, "its values are nested too deeply") from error

@@ -8,7 +8,6 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any, Final
 
-from wrinkle_cad import settings
 from wrinkle_cad.errors import ExportError, JobError
 from wrinkle_cad.files.atomic import replace_together
 from wrinkle_cad.files.regular import hash_regular, is_regular, read_regular
@@ -20,6 +19,8 @@ SCHEMA: Final = "wrinkle_cad/job"
 SCHEMA_VERSION: Final = 1
 PAGE_MARK: Final = '<meta name="generator" content="wrinkle_cad'
 
+_LOOKED_AT_LIMIT: Final = 64 * 2**20
+"""Bytes; the largest file that is read to tell whether it is one of our JSON files or pages."""
 _SCHEMAS: Final = "wrinkle_cad/"
 
 
@@ -116,7 +117,7 @@ def _listed_outputs(json_path: Path) -> dict[str, Any]:
 def _own_json(path: Path) -> dict[str, Any]:
     """What a JSON file of this program holds; nothing if it is not one."""
     try:
-        content = json.loads(read_regular(path, size_limit=settings.JSON_SIZE_LIMIT))
+        content = json.loads(read_regular(path, size_limit=_LOOKED_AT_LIMIT))
     except (OSError, ValueError, RecursionError):
         # No regular file, no JSON, or such as only somebody else writes: a number of 5,000 digits.
         return {}
@@ -133,7 +134,7 @@ def _is_ours(path: Path, listed: Mapping[str, Any]) -> bool:
     try:
         if path.suffix == ".html":
             # The page shows seconds, so its hash is not in the JSON.
-            return PAGE_MARK.encode() in read_regular(path, size_limit=settings.JSON_SIZE_LIMIT)
+            return PAGE_MARK.encode() in read_regular(path, size_limit=_LOOKED_AT_LIMIT)
         return path.name in listed and listed[path.name] == hash_regular(path)
     except OSError:
         return False

@@ -5,15 +5,16 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Sequence
 from pathlib import Path
-
-from wrinkle_cad import settings
+from typing import Final
 
 from .events import BatchSummary
 from .index_page import write_index_page
 from .manifest import Record
 from .summary import write_summary_table
 
-_COST_SHARE = 20
+_INTERVAL_S: Final = 10.0
+"""Seconds after which a batch under way writes its table and its page again."""
+_COST_SHARE: Final = 20
 """Writing may take one part in so many of the time."""
 
 
@@ -48,4 +49,4 @@ class Pages:
         write_summary_table(self._folder, records)
         write_index_page(self._folder, records, summary)
         end = time.monotonic()
-        self._due = end + max(settings.BATCH_PAGE_INTERVAL_S, _COST_SHARE * (end - start))
+        self._due = end + max(_INTERVAL_S, _COST_SHARE * (end - start))

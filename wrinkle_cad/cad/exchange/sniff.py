@@ -95,13 +95,13 @@ def read_source(path: Path, *, size_limit: int = settings.FILE_SIZE_LIMIT) -> So
 def _read(path: Path, size_limit: int) -> bytes:
     try:
         return read_regular(path, size_limit=size_limit)
+    except IrregularFileError as error:
+        raise InputError(
+            f"Cannot read {path.name}: it {error.strerror}. Name a STEP, BREP or IGES file."
+        ) from error
     except OSError as error:
         reason = error.strerror or str(error)
-        raise InputError(
-            f"Cannot read {path.name}: it {reason}. Name a STEP, BREP or IGES file that can be read."
-            if isinstance(error, IrregularFileError)
-            else f"Cannot read {path.name}: {reason}. Check the path."
-        ) from error
+        raise InputError(f"Cannot read {path.name}: {reason}. Check the path.") from error
 
 
 def _too_large(path: Path, found: str, size_limit: int) -> InputError:
