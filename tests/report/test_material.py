@@ -47,7 +47,7 @@ def test_a_twist_limit_of_its_own_wins_over_the_material(tmp_path: Path) -> None
         ("thickness_mm = 1.0", "no name"),
         ('name = " "', "no name"),
         ("name = 3", "no name"),
-        ('name = "a"\nthickness_mm = -1', "thickness_mm = -1. Give a finite number of at least 0"),
+        ('name = "a"\nthickness_mm = -1', "thickness_mm = -1. Give a number from 0 to 1e+06"),
         ('name = "a"\nthickness_mm = inf', "thickness_mm = inf"),
         ('name = "a"\nlargest_twist_deg = true', "largest_twist_deg = True"),
         ('name = "a"\nsmallest_bend_radius_mm = "2"', "smallest_bend_radius_mm = '2'"),

@@ -27,7 +27,10 @@ def read_toml(path: Path) -> dict[str, Any]:
     except RecursionError as error:
         raise _unreadable(path, "its values are nested too deeply") from error
     except OSError as error:
-        raise _unreadable(path, error.strerror or str(error)) from error
+        reason = printable(error.strerror or str(error))
+        raise InputError(
+            f"{printable(path.name)} cannot be read ({reason}): give a TOML file."
+        ) from error
     except ValueError as error:
         # Not UTF-8, not TOML, or a number of more digits than Python converts.
         raise _unreadable(path, " ".join(str(error).split())) from error

@@ -128,6 +128,6 @@ def _check_number(file: str, key: str, value: Any) -> None:
     # An integer of 400 digits is no float.
     if not is_number or not 0.0 <= value < math.inf or value > _LARGEST:
         raise InputError(
-            f"The material {file} has {key} = {str(value)[:_LISTED]}. Give a number from 0 to"
+            f"The material {file} has {key} = {repr(value)[:_LISTED]}. Give a number from 0 to"
             f" {_LARGEST:g}."
         )

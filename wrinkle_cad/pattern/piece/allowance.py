@@ -101,7 +101,7 @@ def _beyond_bare_edges(
         width_in, width_on = float(width[i - 1]), float(width[i])
         if (width_in > 0.0) == (width_on > 0.0):
             continue
-        reach = max(width_in, width_on) / float(np.sin(turn[i]))
+        reach = max(width_in, width_on) / math.sin(turn[i])
         if reach > mitre_limit * max(width_in, width_on):
             continue
         bare = along[i - 1] if width_in == 0.0 else along[i]

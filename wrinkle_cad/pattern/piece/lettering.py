@@ -7,6 +7,7 @@ it, then, where the piece is too narrow for readable letters, beside it with a l
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from functools import lru_cache
@@ -237,7 +238,7 @@ def _turned(
     block: _Block, lines: Sequence[str], corner: Floats, height: float, degrees: float
 ) -> tuple[tuple[TextRow, ...], Floats]:
     angle = np.radians(degrees)
-    cosine, sine = float(np.cos(angle)), float(np.sin(angle))
+    cosine, sine = math.cos(angle), math.sin(angle)
 
     def back(points: Floats) -> Floats:
         x, y = points[..., 0], points[..., 1]
