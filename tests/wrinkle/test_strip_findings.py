@@ -33,7 +33,7 @@ def codes(strip: WrinkleStrip) -> list[str]:
 def test_a_sound_strip_has_no_findings_and_warns_of_nothing() -> None:
     with warnings.catch_warnings():
         warnings.simplefilter("error", WrinkleWarning)
-        strip = WrinkleStrip(b3d.Line((0, 0, 0), (100, 0, 0)), b3d.Line((0, 20, 0), (100, 20, 9)))
+        strip = WrinkleStrip(b3d.Line((0, 0, 0), (100, 0, 0)), b3d.Line((0, 20, 0), (100, 20, 3)))
         assert strip.findings == ()
         assert strip.report.name == "strip"
 
@@ -129,3 +129,21 @@ def test_other_threads_stay_as_loud_as_before() -> None:
         thread.start()
         thread.join()
     assert len(heard) == 1
+
+
+def test_a_creased_strip_says_where_and_by_how_much() -> None:
+    fold = b3d.Polyline((0, 0, 0), (40, 0, 0), (70, 30, 0))
+    (finding,) = WrinkleStrip(fold, b3d.Pos(0, 0, 20) * fold, name="fold").findings
+    assert (finding.code, finding.severity) == ("creased", "warning")
+    assert finding.message == (
+        "fold is creased by 45.0 degrees at 40.0 mm of P and 40.0 mm of Q, where a rail has a corner."
+    )
+
+
+def test_a_strip_that_stretches_a_sheet_says_by_how_much() -> None:
+    rails = (b3d.Line((0, 0, 0), (100, 0, 0)), b3d.Line((0, 20, 0), (100, 20, 53)))
+    (finding,) = WrinkleStrip(*rails, name="skew").findings
+    assert (finding.code, finding.severity) == ("stretched", "warning")
+    assert re.match(
+        r"skew stretches a flat sheet by at most 2\.9\d%, over \d+\.\d mm", finding.message
+    )

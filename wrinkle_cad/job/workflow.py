@@ -20,7 +20,6 @@ from .summary import summary_of, to_json
 if TYPE_CHECKING:
     from wrinkle_cad.cad.exchange.choose import Chosen
     from wrinkle_cad.cad.exchange.shapes import CadFile
-    from wrinkle_cad.wrinkle.strip_report import StripReport
     from wrinkle_cad.wrinkle.triangulated_strip import TriangulatedStrip
 
     from .writing import Made
@@ -138,7 +137,7 @@ def _check_no_waves(job: Job) -> None:
 def _judged(job: Job, file: CadFile, chosen: Chosen, made: Made) -> dict[str, Any]:
     findings = [
         *(made.upper.findings if made.upper is not None else ()),
-        *(finding for strip in made.strips for finding in findings_on(strip, strip.report)),
+        *(finding for strip in made.strips for finding in findings_on(strip)),
         *made.pattern.findings,
     ]
     reports = [strip.report for strip in made.strips]
@@ -148,20 +147,10 @@ def _judged(job: Job, file: CadFile, chosen: Chosen, made: Made) -> dict[str, An
     return summary
 
 
-def findings_on(strip: TriangulatedStrip, report: StripReport) -> Iterator[Finding]:
+def findings_on(strip: TriangulatedStrip) -> Iterator[Finding]:
     """What the user should know about a strip."""
     # How a pattern was split says the pattern itself, with the number of its pieces.
     yield from (finding for finding in strip.findings if finding.code != "flat-overlaps")
-    invalid = report.invalid_bridges - report.inflection_bridges
-    if invalid:
-        yield Finding(
-            "not-developable",
-            "warning",
-            f"{report.name} is not developable: {invalid} of {report.interior_bridges} bridges are"
-            f" not locally convex, along {report.invalid_length_p_mm:.1f} mm of P and"
-            f" {report.invalid_length_q_mm:.1f} mm of Q. The sheet must stretch there, or a rail"
-            " must change.",
-        )
 
 
 def _write(job: Job, made: Made, summary: dict[str, Any], clock: PhaseClock) -> tuple[Path, ...]:

@@ -9,13 +9,14 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from wrinkle_cad import settings
-from wrinkle_cad.errors import Finding
+from wrinkle_cad.errors import Finding, Severity
 from wrinkle_cad.strip.crossings import self_crossings
 from wrinkle_cad.strip.places import place_text
 from wrinkle_cad.strip.triangulation import Triangulation
 
 if TYPE_CHECKING:
     from wrinkle_cad.strip.flat.unrolling import Unrolling
+    from wrinkle_cad.strip.rulings.surface import RuledStrip
 
 
 FOLDED: Final = ("folded-back", "passes-through-itself")
@@ -60,6 +61,36 @@ def _more(count: int) -> str:
 def _size(triangulation: Triangulation) -> float:
     extent = np.ptp(np.vstack((triangulation.p, triangulation.q)), axis=0).tolist()
     return math.hypot(*extent)
+
+
+def sheet_findings(name: str, ruled: RuledStrip, *, is_band: bool) -> tuple[Finding, ...]:
+    """Returns whether a sheet must crease or give to take a strip's shape.
+
+    Args:
+        name: of the strip.
+        ruled: its exact surface.
+        is_band: whether the program made it: then it is worth knowing, and no warning.
+    """
+    severity: Severity = "info" if is_band else "warning"
+    found = []
+    sharpest = max(ruled.creases, key=lambda crease: crease.angle, default=None)
+    if sharpest is not None and math.degrees(sharpest.angle) >= settings.CREASE_DEG:
+        is_corner = sharpest.cause == "corner"
+        why = "a rail has a corner" if is_corner else "no rail has a corner"
+        message = (
+            f"{name} is creased by {math.degrees(sharpest.angle):.1f} degrees at"
+            f" {sharpest.p_arc:.1f} mm of P and {sharpest.q_arc:.1f} mm of Q, where {why}."
+        )
+        found.append(Finding("creased", severity, message))
+    strain = 100.0 * ruled.strain.largest
+    if strain > settings.STRETCH_PERCENT:
+        length = ruled.strain.length_above(settings.STRETCH_PERCENT / 100.0)
+        message = (
+            f"{name} stretches a flat sheet by at most {strain:.3g}%, over {length:.1f} mm: the"
+            " rails turn against each other there."
+        )
+        found.append(Finding("stretched", severity, message))
+    return tuple(found)
 
 
 def flat_findings(name: str, unrolling: Unrolling) -> tuple[Finding, ...]:

@@ -25,7 +25,13 @@ from wrinkle_cad.strip.triangulation import Triangulation, triangulate
 from .exact_surface import exact_surface
 from .grain import radii_by_grain
 from .loudness import warn_of
-from .strip_findings import FOLDED, area_findings, flat_findings, shape_findings
+from .strip_findings import (
+    FOLDED,
+    area_findings,
+    flat_findings,
+    shape_findings,
+    sheet_findings,
+)
 from .strip_report import Role, StripReport, report_on
 
 if TYPE_CHECKING:
@@ -107,11 +113,13 @@ class TriangulatedStrip:
     def findings(self) -> tuple[Finding, ...]:
         """What is unsure about the strip; asking for it makes the surface and the unrolling.
 
-        Rails that were turned, a fold-back, a strip that passes through itself, a pattern that
-        must be split, an area known to no better than 1e-6. A ``WrinkleWarning`` says so as well.
+        Rails that were turned, a fold-back, a strip that passes through itself, a crease, a sheet
+        that must give, a pattern that must be split, an area known to no better than 1e-6. A
+        ``WrinkleWarning`` says so as well.
         """
         flat = flat_findings(self.name, self.unrolling)
-        return (*self._noticed, *flat, *area_findings(self.name, self.area_error))
+        sheet = sheet_findings(self.name, self.ruled, is_band=self.role == "band")
+        return (*self._noticed, *sheet, *flat, *area_findings(self.name, self.area_error))
 
     def _tell(self, findings: tuple[Finding, ...]) -> None:
         """Warns of what was found later on, unless the strip has warned before."""
