@@ -136,7 +136,8 @@ def test_a_creased_strip_says_where_and_by_how_much() -> None:
     (finding,) = WrinkleStrip(fold, b3d.Pos(0, 0, 20) * fold, name="fold").findings
     assert (finding.code, finding.severity) == ("creased", "warning")
     assert finding.message == (
-        "fold is creased by 45.0 degrees at 40.0 mm of P and 40.0 mm of Q, where a rail has a corner."
+        "fold is creased by 45.0 degrees at 40.0 mm of P and 40.0 mm of Q, where a rail has a"
+        " corner."
     )
 
 
