@@ -158,6 +158,27 @@ def test_examples_use_public_names_only() -> None:
     assert not faults, "\n".join(faults)
 
 
+def test_only_one_module_knows_what_two_versions_of_the_cad_kernel_call_differently() -> None:
+    versions = PACKAGE / "cad" / "kernel" / "versions.py"
+    faults = [
+        f"{path}:{node.lineno}"
+        for path in MODULES
+        if path != versions
+        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8")))
+        if isinstance(node, ast.Try)
+        and any(isinstance(inner, ast.ImportFrom) for inner in node.body)
+        and "OCP" in ast.unparse(node)
+    ]
+    faults += [
+        f"{path}:{line} imports {module}"
+        for path in MODULES
+        if path != versions
+        for line, module, _ in imports_of(path)
+        if module in {"OCP.collections", "OCP.TopTools", "OCP.TColgp", "OCP.TColStd"}
+    ]
+    assert not faults, "\n".join(faults)
+
+
 def test_strip_and_pattern_are_of_use_without_cad_and_terminal() -> None:
     faults = [
         f"{path}:{line} imports {module}"

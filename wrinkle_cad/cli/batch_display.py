@@ -28,7 +28,7 @@ from wrinkle_cad.batch.folder.events import (
     Listener,
 )
 from wrinkle_cad.batch.folder.index_page import PAGE_NAME
-from wrinkle_cad.batch.folder.summary import TABLE_NAME
+from wrinkle_cad.batch.folder.summary_table import TABLE_NAME
 
 
 @contextmanager

@@ -25,7 +25,7 @@ from wrinkle_cad.batch.folder.events import (
 from wrinkle_cad.batch.folder.inputs import find_sources
 from wrinkle_cad.batch.folder.plan import PlannedJob, plan_batch
 from wrinkle_cad.batch.folder.rehearsal import DONE_BEFORE, TO_DO, rehearse
-from wrinkle_cad.batch.folder.summary import total_seconds
+from wrinkle_cad.batch.folder.summary_table import total_seconds
 from wrinkle_cad.batch.workers.crew import Crew
 from wrinkle_cad.errors import InputError
 from wrinkle_cad.job.job import read_job_toml

@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     from wrinkle_cad.strip.flat.unrolling import Unrolling
 
 
-class FlatStrip(SampledStrip, Protocol):
+class UnrolledStrip(SampledStrip, Protocol):
     """What a pattern needs of a strip."""
 
     @property
@@ -168,7 +168,7 @@ def _moment() -> datetime:
 
 
 def pattern_of_strips(
-    strips: Iterable[FlatStrip],
+    strips: Iterable[UnrolledStrip],
     piece_settings: PieceSettings | None = None,
     *,
     turned_over: Sequence[bool] = (),
@@ -221,7 +221,7 @@ def pattern_of_strips(
 
 
 def _settings_by_strip(
-    strips: Sequence[FlatStrip], parts: Sequence[StripParts], chosen: PieceSettings
+    strips: Sequence[UnrolledStrip], parts: Sequence[StripParts], chosen: PieceSettings
 ) -> Iterator[PieceSettings]:
     """The settings of each strip: seams know the corners of the strip on their other side."""
     corners: dict[int, list[float]] = {}
@@ -244,6 +244,6 @@ def _settings_by_strip(
         )
 
 
-def _rails(strip: FlatStrip) -> tuple[int, int]:
+def _rails(strip: UnrolledStrip) -> tuple[int, int]:
     # Strips that share a rail share its samples: one sampling per directrix.
     return id(strip.p_samples), id(strip.q_samples)

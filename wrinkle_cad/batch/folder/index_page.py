@@ -16,7 +16,7 @@ from wrinkle_cad.files.own import write_own
 
 from .events import BatchSummary
 from .manifest import WAITING, Record
-from .summary import total_seconds
+from .summary_table import total_seconds
 
 PAGE_NAME: Final = "index.html"
 

@@ -14,7 +14,7 @@ from tests.batch.folder.test_manifest import RECORD
 from wrinkle_cad.batch.folder.events import BatchSummary
 from wrinkle_cad.batch.folder.index_page import index_page, write_index_page
 from wrinkle_cad.batch.folder.manifest import OutputFile
-from wrinkle_cad.batch.folder.summary import safe_cell, write_summary_table
+from wrinkle_cad.batch.folder.summary_table import safe_cell, write_summary_table
 
 SUMMARY = BatchSummary(
     folder=Path("out"), done=2, failed=1, skipped=0, left=0, missed_limits=0, seconds=1.0
