@@ -11,7 +11,7 @@ from wrinkle_cad.files.own import check_own
 from wrinkle_cad.files.regular import hash_regular, is_regular
 from wrinkle_cad.job.outputs import ownership_of
 
-from . import index_page, journal, summary
+from . import index_page, journal, summary_table
 from .manifest import Record, check_manifest
 
 OUTDATED_SUFFIX: Final = ".outdated"
@@ -19,7 +19,7 @@ OUTDATED_SUFFIX: Final = ".outdated"
 
 _OWN: Final = (
     (index_page.PAGE_NAME, index_page.BEGINNINGS),
-    (summary.TABLE_NAME, summary.BEGINNINGS),
+    (summary_table.TABLE_NAME, summary_table.BEGINNINGS),
     (journal.LOG_NAME, journal.BEGINNINGS),
 )
 Hashes = Mapping[str, frozenset[str]]

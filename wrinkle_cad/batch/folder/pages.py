@@ -10,7 +10,7 @@ from typing import Final
 from .events import BatchSummary
 from .index_page import write_index_page
 from .manifest import Record
-from .summary import write_summary_table
+from .summary_table import write_summary_table
 
 _INTERVAL_S: Final = 10.0
 """Seconds after which a batch under way writes its table and its page again."""
