@@ -2,21 +2,17 @@
 
 from __future__ import annotations
 
-from functools import partial
 from typing import Any
 
 from wrinkle_cad import settings
-from wrinkle_cad.cad.rail.apart import check_apart
 from wrinkle_cad.cad.rail.directrix import check_distinct, make_directrix, orient_alike
-from wrinkle_cad.cad.rail.joint_samples import Search, sample_rails, search_between
 from wrinkle_cad.errors import Finding
 from wrinkle_cad.options.checking import check_known
 from wrinkle_cad.options.option import options_of
 from wrinkle_cad.options.signature import takes_options_of
 from wrinkle_cad.pattern.piece.options import Direction
-from wrinkle_cad.strip.flat.turning import without_turning_back
-from wrinkle_cad.strip.triangulation import triangulate
 
+from .found_strip import found_between
 from .options import StripArguments, StripSettings
 from .triangulated_strip import TriangulatedStrip
 
@@ -76,21 +72,11 @@ class WrinkleStrip(TriangulatedStrip):
         given_p, given_q = make_directrix(p, name="P"), make_directrix(q, name="Q")
         check_distinct(given_p, given_q)
         p_rail, q_rail, was_turned = orient_alike(given_p, given_q)
-        samples = sample_rails(p_rail, q_rail, chosen.tolerance, chosen.max_chord)
-        check_apart(p_rail, q_rail, *samples)
-        search = _search(chosen)
-        triangulation, (p_samples, q_samples) = without_turning_back(
-            *search_between((p_rail, q_rail), samples, chosen.tolerance, search),
-            (p_rail.point_at, q_rail.point_at),
-            search,
-            tolerance=settings.FLAT_LINE_PER_TOLERANCE * chosen.tolerance,
-        )
+        found = found_between(p_rail, q_rail, chosen)
         super().__init__(
-            p_rail,
-            q_rail,
-            p_samples,
-            q_samples,
-            triangulation,
+            *found.rails,
+            *found.samples,
+            found.triangulation,
             tolerance=chosen.tolerance,
             name=name,
             color=color,
@@ -100,18 +86,6 @@ class WrinkleStrip(TriangulatedStrip):
             grain=grain,
             findings=_orientation_findings(name) if was_turned else (),
         )
-
-
-def _search(chosen: StripSettings) -> Search:
-    planarity = chosen.planarity
-    return partial(
-        triangulate,
-        criteria=chosen.criteria,
-        search=chosen.search,
-        energy=chosen.energy,
-        price=chosen.price,
-        planarity=settings.planarity_from(chosen.tolerance) if planarity is None else planarity,
-    )
 
 
 def _orientation_findings(name: str) -> tuple[Finding, ...]:

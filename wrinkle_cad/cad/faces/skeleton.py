@@ -55,6 +55,10 @@ class Skeleton:
         self._parameters = tuple(rail.parameters for rail in samples)
         self._has_curves = has_curves
         self._owner, self.points = _merged(triangulation, 2.0 * self.limit)
+        self._is_closed = _closes(triangulation, rails)
+        if self._is_closed:
+            for first, last in ((0, len(triangulation.p) - 1), (len(triangulation.p), -1)):
+                self._owner[last] = self._owner[first]
         self._starts = (0, len(triangulation.p))
         self._vertices: dict[int, TopoDS_Vertex] = {}
         self._bridges: dict[int, Border] = {}
@@ -86,6 +90,8 @@ class Skeleton:
         if at not in self._bridges:
             if at in self._replaced:
                 self._bridges[at] = self._around(at, *self._replaced[at])
+            elif self._is_closed and at == len(self._path) - 1 and 0 not in self._replaced:
+                self._bridges[at] = self.bridge(0)
             else:
                 i, j = self._path[at].tolist()
                 self._bridges[at] = self._line(self.corner(0, i), self.corner(1, j))
@@ -149,6 +155,14 @@ class Skeleton:
         part = sub_curve(rail.curves[piece], max(first, low), min(last, high))
         ends = self.points[[start, end]]
         return (curved_edge(part, self.vertex(start), self.vertex(end), ends),)
+
+
+def _closes(triangulation: Triangulation, rails: tuple[Directrix, Directrix]) -> bool:
+    """Whether the last bridge of a strip is its first one again."""
+    return all(rail.is_closed for rail in rails) and all(
+        len(points) > 2 and np.array_equal(points[0], points[-1])
+        for points in (triangulation.p, triangulation.q)
+    )
 
 
 def _largest_gap(points: Floats, start: Floats, end: Floats) -> float:

@@ -81,8 +81,27 @@ def search_between(
     Raises:
         InputError: what ``search`` refuses.
     """
+    found = search(samples[0].points, samples[1].points)
+    return mended_between(found, rails, samples, tolerance, search)
+
+
+def mended_between(
+    found: Triangulation,
+    rails: tuple[Directrix | None, Directrix | None],
+    samples: tuple[Samples, Samples],
+    tolerance: float,
+    search: Search,
+) -> tuple[Triangulation, tuple[Samples, Samples]]:
+    """Returns what ``search_between`` returns where the best strip was found already.
+
+    Args:
+        found: the best triangulation between the samples.
+        rails: see ``search_between``.
+        samples: of both rails.
+        tolerance: mm; how far a chord may lie from its curve.
+        search: the best triangulation between two rows of points.
+    """
     from wrinkle_cad.strip.partners import without_fold_backs
 
-    found = search(samples[0].points, samples[1].points)
     p, q = (None if rail is None or rail.is_polyline else rail.point_at for rail in rails)
     return without_fold_backs(found, samples, (p, q), tolerance, search)

@@ -172,9 +172,17 @@ class _Sectors:
             return False
         if float(_dots(self.areas[first:last], normal[None]).min()) < -gap * reach:
             return False
+        if all(_returns(points[side == rail], gap) for rail in (0, 1)):
+            # The outline of a ring would run along the ruling that cuts it, there and back.
+            return False
         return not _covers_itself(
             points - base, side, apexes - base, normal, self.sides[first:last]
         )
+
+
+def _returns(points: Floats, gap: float) -> bool:
+    """Whether a stretch of a rail ends where it starts; one without points is the apex of all."""
+    return len(points) == 0 or float(_sizes(points[-1:] - points[:1])[0]) <= gap * gap
 
 
 def _covers_itself(

@@ -1,0 +1,257 @@
+"""Where two closed rails start: at places that their shape tells, not where their parameters begin.
+
+A closed curve has no start of its own; where its parameter happens to begin says how it was drawn.
+So both rails of a closed strip are started again: at their corners that are nearest to each other;
+if one rail only has corners, at the corner that is nearest to the other rail, and at that corner's
+foot; if none has, where the rails are nearest to each other.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from wrinkle_cad import settings
+from wrinkle_cad.cad.kernel.evaluation import PoleCurve
+from wrinkle_cad.cad.kernel.splines import curve_arrays, make_curve
+from wrinkle_cad.cad.kernel.steps import kernel_step
+from wrinkle_cad.errors import InputError
+from wrinkle_cad.strip.curve.nearest import nearest_on_polyline
+from wrinkle_cad.strip.curve.polyline import row_lengths
+from wrinkle_cad.strip.portable import dot
+
+from .directrix import Directrix
+
+Floats = NDArray[np.float64]
+
+LOOKED_AT: Final = 721
+"""Points of a rail among which the nearest to the other rail are looked for first."""
+
+FOOT_STEPS: Final = 60
+"""Steps towards a foot, or from foot to foot; each gains digits, and the last changes nothing."""
+
+
+def are_closed(p: Directrix, q: Directrix) -> bool:
+    """Tells whether both rails of a strip are closed; a rail that is a point is neither.
+
+    Raises:
+        InputError: one is closed and the other is open.
+    """
+    if p.is_point or q.is_point:
+        return False
+    if p.is_closed == q.is_closed:
+        return p.is_closed
+    closed, opened = (p, q) if p.is_closed else (q, p)
+    raise InputError(
+        f"Rail {closed.name or 'P'} is closed, but the ends of rail {opened.name or 'Q'} are"
+        f" {_ends_apart(opened):.4g} mm apart. Both must be closed, or both open: close the one, or"
+        " cut the other."
+    )
+
+
+def _ends_apart(rail: Directrix) -> float:
+    ends = rail.point_at(np.array(rail.interval))
+    return float(row_lengths(ends[1:] - ends[:1])[0])
+
+
+def started_alike(p: Directrix, q: Directrix) -> tuple[Directrix, Directrix]:
+    """Returns two closed rails, each started where its shape and the other rail tell.
+
+    Swapping the rails, drawing one from another start and moving both make no difference, unless
+    several places are equally good: then either may be taken.
+
+    Args:
+        p: closed rail P.
+        q: closed rail Q, which runs as P does.
+    """
+    p_start, q_start = _starts(p, q)
+    return started_at(p, p_start), started_at(q, q_start)
+
+
+def _starts(p: Directrix, q: Directrix) -> tuple[float, float]:
+    p_corners, q_corners = corners_of(p), corners_of(q)
+    if len(p_corners) and len(q_corners):
+        apart = row_lengths(
+            (p.point_at(p_corners)[:, None] - q.point_at(q_corners)[None]).reshape(-1, 3)
+        )
+        i, j = divmod(int(apart.argmin()), len(q_corners))
+        return float(p_corners[i]), float(q_corners[j])
+    if len(p_corners):
+        return _corner_and_foot(p, p_corners, q)
+    if len(q_corners):
+        q_start, p_start = _corner_and_foot(q, q_corners, p)
+        return p_start, q_start
+    return _nearest_places(p, q)
+
+
+def corners_of(directrix: Directrix) -> Floats:
+    """Returns the parameters at which a closed rail turns sharply; its start among them is 0."""
+    found = []
+    for at in (directrix.interval[0], *directrix.breaks):
+        before, after = _velocities(directrix, at)
+        sizes = float(row_lengths(before)[0] * row_lengths(after)[0])
+        if float(dot(before, after)[0]) < math.cos(settings.CLOSED_RAIL_CORNER) * sizes:
+            found.append(at)
+    return np.array(found, dtype=np.float64)
+
+
+def _velocities(directrix: Directrix, at: float) -> tuple[Floats, Floats]:
+    """Returns (1, 3) each: the derivatives just before and just after a parameter, around."""
+    here = np.array([at])
+    after = directrix.velocity_at(here)
+    i = int(directrix.piece_at(here)[0])
+    piece = directrix.pieces[i]
+    if at <= piece.knots[0]:
+        piece = directrix.pieces[i - 1]
+        here = piece.knots[-1:]
+    return piece.velocity_at(here, "left"), after
+
+
+def _corner_and_foot(leader: Directrix, corners: Floats, other: Directrix) -> tuple[float, float]:
+    points = leader.point_at(corners)
+    feet = [_foot(point, other) for point in points]
+    gaps = row_lengths(points - other.point_at(np.array(feet)))
+    best = int(gaps.argmin())
+    return float(corners[best]), feet[best]
+
+
+def _nearest_places(p: Directrix, q: Directrix) -> tuple[float, float]:
+    grid = np.linspace(*p.interval, LOOKED_AT)[:-1]
+    line = q.point_at(np.linspace(*q.interval, LOOKED_AT))
+    at_p = float(grid[nearest_on_polyline(p.point_at(grid), line).distance.argmin()])
+    at_q = _foot(p.point_at(np.array([at_p]))[0], q)
+    for _ in range(FOOT_STEPS):
+        before = at_p, at_q
+        at_p = _settled_foot(q.point_at(np.array([at_q]))[0], p, at_p)
+        at_q = _settled_foot(p.point_at(np.array([at_p]))[0], q, at_q)
+        if (at_p, at_q) == before:
+            break
+    return at_p, at_q
+
+
+def _foot(point: Floats, rail: Directrix) -> float:
+    """The parameter of the point of a closed rail that is nearest to (3,) mm."""
+    grid = np.linspace(*rail.interval, LOOKED_AT)
+    found = nearest_on_polyline(point[None], rail.point_at(grid))
+    k, share = int(found.segment[0]), float(found.share[0])
+    return _settled_foot(point, rail, float((1.0 - share) * grid[k] + share * grid[k + 1]))
+
+
+def _settled_foot(point: Floats, rail: Directrix, start: float) -> float:
+    """Walks to the foot of a point: the tangent's foot, taken as far as it comes nearer."""
+    first, last = rail.interval
+    at, gap = start, _gap(point, rail, start)
+    for _ in range(FOOT_STEPS):
+        place = np.array([at])
+        velocity = rail.velocity_at(place)
+        speed2 = float(dot(velocity, velocity)[0])
+        if speed2 == 0.0:
+            break
+        step = float(dot(point[None] - rail.point_at(place), velocity)[0]) / speed2
+        while True:
+            there = first + (at + step - first) % (last - first)
+            nearer = _gap(point, rail, there)
+            if nearer < gap or abs(step) <= settings.KNOT_GAP:
+                break
+            step /= 2.0
+        if nearer >= gap:
+            break
+        at, gap = there, nearer
+    return at
+
+
+def _gap(point: Floats, rail: Directrix, at: float) -> float:
+    return float(row_lengths(rail.point_at(np.array([at])) - point)[0])
+
+
+def started_at(directrix: Directrix, at: float) -> Directrix:
+    """Returns a closed rail that starts and ends at the point with a given parameter.
+
+    A rail given as points starts at that one of them that is next.
+
+    Args:
+        directrix: the rail; the point at u of the returned one is this one's at u + at, around.
+        at: the parameter, in the rail's interval.
+    """
+    first, last = directrix.interval
+    length = last - first
+    if directrix.is_polyline:
+        at = float(directrix.pieces[0].knots[np.searchsorted(directrix.pieces[0].knots, at)])
+    at = first if min(at - first, last - at) <= settings.KNOT_GAP else at
+    if at == first:
+        return directrix
+    seam = _seam_breaks(directrix)
+    turned = sorted((mark - at) % length for mark in (*seam, *directrix.breaks))
+    pieces = _turned_pieces(directrix, at)
+    return replace(
+        directrix,
+        pieces=pieces,
+        curves=tuple(
+            make_curve(piece.poles, piece.knots, piece.multiplicities, piece.degree, piece.weights)
+            for piece in pieces
+        ),
+        breaks=tuple(
+            mark for mark in turned if settings.KNOT_GAP < mark < length - settings.KNOT_GAP
+        ),
+    )
+
+
+def _seam_breaks(directrix: Directrix) -> tuple[float, ...]:
+    """The rail's start, if edges meet there or the curve is not C1."""
+    if len(directrix.pieces) > 1:
+        return (directrix.interval[0],)
+    before, after = _velocities(directrix, directrix.interval[0])
+    speed = max(float(row_lengths(before)[0]), float(row_lengths(after)[0]))
+    is_smooth = float(row_lengths(after - before)[0]) <= settings.RAIL_JUMP * speed
+    return () if is_smooth else (directrix.interval[0],)
+
+
+def _turned_pieces(directrix: Directrix, at: float) -> tuple[PoleCurve, ...]:
+    """The edges from a parameter around to it again, their knots from 0 on."""
+    length = directrix.interval[1] - directrix.interval[0]
+    i = int(directrix.piece_at(np.array([at]))[0])
+    piece = directrix.pieces[i]
+    later = [_moved(other, -at) for other in directrix.pieces[i + 1 :]]
+    earlier = [_moved(other, length - at) for other in directrix.pieces[:i]]
+    if at - piece.knots[0] <= settings.KNOT_GAP:
+        return (_moved(piece, -at), *later, *earlier)
+    head = _moved(_part(piece, at, float(piece.knots[-1])), -at)
+    tail = _moved(_part(piece, float(piece.knots[0]), at), length - at)
+    if len(directrix.pieces) == 1:
+        return (_joined(head, tail),)
+    return (head, *later, *earlier, tail)
+
+
+def _moved(piece: PoleCurve, by: float) -> PoleCurve:
+    return replace(piece, knots=piece.knots + by)
+
+
+def _part(piece: PoleCurve, first: float, last: float) -> PoleCurve:
+    curve = make_curve(piece.poles, piece.knots, piece.multiplicities, piece.degree, piece.weights)
+    with kernel_step("cut a rail in two"):
+        curve.Segment(first, last, settings.KNOT_GAP)
+    poles, weights, knots, multiplicities = curve_arrays(curve)
+    return PoleCurve(piece.degree, knots, multiplicities, poles, weights)
+
+
+def _joined(head: PoleCurve, tail: PoleCurve) -> PoleCurve:
+    """One curve of two of the same degree, the second beginning where the first ends."""
+    joint = [head.degree]
+    multiplicities = np.concatenate((head.multiplicities[:-1], joint, tail.multiplicities[1:]))
+    weights = None
+    if head.weights is not None or tail.weights is not None:
+        # A curve whose weights are all the same says so by having none.
+        before = np.ones(len(head.poles)) if head.weights is None else head.weights
+        after = np.ones(len(tail.poles)) if tail.weights is None else tail.weights
+        weights = np.concatenate((before, after[1:] * (before[-1] / after[0])))
+    return PoleCurve(
+        head.degree,
+        np.concatenate((head.knots, tail.knots[1:])),
+        multiplicities,
+        np.concatenate((head.poles, tail.poles[1:])),
+        weights,
+    )
