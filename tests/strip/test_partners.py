@@ -201,3 +201,13 @@ def test_a_rail_given_as_points_keeps_its_samples() -> None:
     assert kept is samples
     _, (p, _) = without_fold_backs(found, samples, (None, along(rails[1])), TOLERANCE, search)
     assert p is samples[0]
+
+
+def test_a_fan_from_a_point_that_turns_back_is_left_as_it_is() -> None:
+    apex, rail = np.zeros((1, 3)), np.array([[-40.0, 30, 0], [20, 30, 0], [-5, 40, 0], [40, 45, 0]])
+    samples = (Samples(np.zeros(1), apex), Samples(arc_lengths(rail), rail))
+    found = search(apex, rail)
+    assert found.fold_back_count > 0
+    same, kept = without_fold_backs(found, samples, (None, along(rail)), TOLERANCE, search)
+    assert same is found
+    assert kept is samples

@@ -54,9 +54,12 @@ def without_fold_backs(
         search: how the best triangulation between two rows of points is found.
 
     Returns:
-        The triangulation and the samples it belongs to; those given if there is no better one.
+        The triangulation and the samples it belongs to; those given if there is no better one, if
+        a rail is a point, which sees the other from one side only, or if the strip is closed.
     """
     best, samples = found, rails
+    if found.is_closed or min(len(rail.points) for rail in rails) < 2:
+        return best, samples
     for density in DENSITIES:
         if best.fold_back_count == 0:
             break
