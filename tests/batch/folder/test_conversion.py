@@ -313,3 +313,8 @@ def test_a_move_that_stops_half_way_is_finished_by_the_next_run(
     monkeypatch.undo()
     assert counts(bench.run()) == (0, 0, 1)
     assert set(bench.files()) == {f"a.{kind}" for kind in KINDS}
+
+
+def test_a_size_or_a_name_that_ends_like_a_file_is_text(bench: Bench) -> None:
+    bench.put(a="1")
+    assert counts(bench.run(keywords={"size": "42.toml", "name": "a.toml"})) == (1, 0, 0)

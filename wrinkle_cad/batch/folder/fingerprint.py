@@ -11,6 +11,7 @@ from typing import Any, Final
 
 from wrinkle_cad.files.regular import hash_regular
 from wrinkle_cad.job.job import Job
+from wrinkle_cad.options.option import options_of
 
 _NOT_A_SETTING: Final = frozenset({"input", "output_dir"})
 
@@ -29,14 +30,11 @@ def hash_settings(job: Job, versions: Mapping[str, str]) -> str:
         OSError: a file among the settings cannot be read.
     """
     values: dict[str, Any] = {"input": job.input.name, "versions": dict(versions)}
+    settings = options_of(type(job))
     for field in fields(job):
         if field.name not in _NOT_A_SETTING:
             value = getattr(job, field.name)
-            is_file = field.name == "profile" and value.lower().endswith(".toml")
-            values[field.name] = _plain(Path(value) if is_file else value)
+            is_file = value is not None and settings[field.name].is_path(value)
+            values[field.name] = {"file": hash_regular(Path(value))} if is_file else value
     text = json.dumps(values, sort_keys=True, ensure_ascii=True, default=str)
     return hashlib.sha256(text.encode("ascii")).hexdigest()
-
-
-def _plain(value: Any) -> Any:
-    return {"file": hash_regular(value)} if isinstance(value, Path) else value

@@ -28,6 +28,7 @@ WAITING: Final = "waiting"
 
 _SIZE_LIMIT: Final = 1 << 30
 _TEXTS: Final = ("key", "input", "input_sha256", "settings_sha256", "outcome")
+_TEXT_FIGURES: Final = ("state",)
 _MORE_TEXTS: Final = ("phase", "error", "message", "finished")
 
 
@@ -111,7 +112,12 @@ def _is_sound(record: Record) -> bool:
         texts += [file.name, file.sha256]
         if not isinstance(file.bytes, int) or not is_plain_name(file.name):
             return False
-    numbers = [*record.seconds.values(), *record.figures.values()]
+    numbers = [*record.seconds.values()]
+    for name, figure in record.figures.items():
+        if name in _TEXT_FIGURES:
+            texts.append(figure)
+        elif figure is not None:
+            numbers.append(figure)
     parts = PurePosixPath(record.key).parts if isinstance(record.key, str) else ("..",)
     return (
         all(isinstance(text, str) for text in texts)
