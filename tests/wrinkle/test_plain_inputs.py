@@ -22,7 +22,9 @@ def fold_of(strip: WrinkleStrip) -> float:
 
 
 def is_sound(strip: WrinkleStrip) -> bool:
-    return strip.shell().is_valid and not strip.findings and not strip.unrolling.turned_back_count
+    """Whether nothing is unsure about a strip; that it has creases where its rails have is sure."""
+    unsure = {finding.code for finding in strip.findings} - {"creased", "stretched"}
+    return strip.shell().is_valid and not unsure and not strip.unrolling.turned_back_count
 
 
 def test_a_flat_strap_with_a_tab_is_flat() -> None:
