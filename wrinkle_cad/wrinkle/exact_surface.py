@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from wrinkle_cad.strip.rulings.closed import rule_closed_strip
 from wrinkle_cad.strip.rulings.rail_curve import RailCurve
 from wrinkle_cad.strip.rulings.surface import RuledStrip, rule_strip
 from wrinkle_cad.strip.rulings.through_points import rail_through
@@ -30,9 +31,16 @@ def exact_surface(
         q_samples: the samples of Q.
         triangulation: of these samples.
     """
-    i, j = triangulation.bridges.T
-    bridges = (p_samples.parameters[i], q_samples.parameters[j])
-    return rule_strip(rail_curve(p), rail_curve(q), bridges)
+    rails = (rail_curve(p), rail_curve(q))
+    counts = (len(triangulation.p), len(triangulation.q))
+    at_p, at_q = (
+        samples.parameters[index % count] + (index // count) * (rail.interval[1] - rail.interval[0])
+        for samples, index, count, rail in zip(
+            (p_samples, q_samples), triangulation.bridges.T, counts, rails, strict=True
+        )
+    )
+    rule = rule_closed_strip if triangulation.is_closed else rule_strip
+    return rule(*rails, (at_p, at_q))
 
 
 def rail_curve(directrix: Directrix) -> RailCurve:

@@ -10,9 +10,9 @@
 - *Sheet*: the tangent planes along the rulings (`sheet`).
 
 The bridges of a triangulation say near which rulings to look; nothing else is taken from it, so
-that what is found does not depend on how the rails were sampled. `rule_strip` does all of it.
+that what is found does not depend on how the rails were sampled. `rule_strip` does all of it, and
+`rule_closed_strip` that of a strip without ends.
 
 What is not handled: rails whose tangent lies along a ruling for a stretch (no plane is spanned, the
-twist counts as 0), and closed strips across their seam, where the first and the last ruling count
-as ends of the sheet.
+twist counts as 0).
 """

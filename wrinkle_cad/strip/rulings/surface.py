@@ -78,6 +78,18 @@ def rule_strip(p: RailCurve, q: RailCurve, bridges: tuple[Floats, Floats]) -> Ru
         q: the curve Q, run the same way.
         bridges: (k,) float64 each; parameters on P and Q of the triangulation's bridges, in order.
     """
+    sheet, spacing = rule_sheet(p, q, bridges)
+    return make_surface(sheet, p, q, spacing)
+
+
+def rule_sheet(p: RailCurve, q: RailCurve, bridges: tuple[Floats, Floats]) -> tuple[Sheet, float]:
+    """Returns the tangent planes of that surface, and the mm between the nodes it was found on.
+
+    Args:
+        p: the curve P.
+        q: the curve Q.
+        bridges: as for `rule_strip`.
+    """
     pairing = pairing_near(p, q, bridges, first_spacing(p, q, bridges))
     strain = strain_of(_exact(p, q, pairing)).largest
     for _ in range(MOST_FINER):
@@ -86,7 +98,19 @@ def rule_strip(p: RailCurve, q: RailCurve, bridges: tuple[Floats, Floats]) -> Ru
         before, strain = strain, strain_of(sheet).largest
         if abs(strain - before) <= max(STABLE_STRAIN, STABLE_SHARE * strain):
             break
-    creases = creases_of(sheet, p, q, pairing.spacing)
+    return sheet, pairing.spacing
+
+
+def make_surface(sheet: Sheet, p: RailCurve, q: RailCurve, spacing: float) -> RuledStrip:
+    """Returns the pieces and figures of a sheet.
+
+    Args:
+        sheet: its tangent planes.
+        p: the curve P.
+        q: the curve Q.
+        spacing: mm between the nodes that it was found on.
+    """
+    creases = creases_of(sheet, p, q, spacing)
     pieces = pieces_of(sheet, np.array([crease.ruling for crease in creases], dtype=np.int64))
     return RuledStrip(sheet, pieces, creases, strain_of(sheet), radius_along(sheet, pieces))
 
