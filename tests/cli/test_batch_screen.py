@@ -48,7 +48,7 @@ def test_off_a_terminal_there_is_one_plain_line_per_file(
     bench.put(a="1", b="fail@read", c="SIGKILL@write")
     assert batch(bench) == 1
     out, err = capfd.readouterr()
-    assert out.splitlines()[0] == "a.step: done in 0.05 s, 75.0% of the bridges developable"
+    assert out.splitlines()[0] == "a.step: done in 0.05 s, 100.0% of the rails developable"
     failures = err.splitlines()
     assert len(failures) == 2
     assert failures[0] == "wrinkle-cad: b.step: no curves - 0 - 2 - draw"
