@@ -139,7 +139,6 @@ def test_with_limits_the_verdict_is_pass_or_fail_in_words() -> None:
     assert failed.passed is False
     assert failed.headline == (
         "FAIL for calf leather, 1.2 mm: wrinkle has a bend radius of 0 mm, and 2 is the least."
-        " Make the rails' waves lower or longer."
     )
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
 from typing import Any, Final
 
 from .limits import Limits
@@ -13,9 +14,19 @@ _STRAIGHTER: Final = "Let the rails run more alike."
 _BAND: Final = "It is a band: change --margin, --height, --fade or --phase."
 
 
+@dataclass(frozen=True, slots=True)
+class Missed:
+    """A limit that a strip misses."""
+
+    found: str
+    """What was found and what is allowed, a sentence."""
+    action: str
+    """What to do, a sentence."""
+
+
 def missed_limits(
     entry: Mapping[str, Any], limits: Limits, invalid_percent: float
-) -> tuple[str, ...]:
+) -> tuple[Missed, ...]:
     """Compares one strip with the limits.
 
     Args:
@@ -24,12 +35,13 @@ def missed_limits(
         invalid_percent: share of the rails under invalid bridges.
 
     Returns:
-        One sentence for each limit missed: what was found, what is allowed, what to do.
+        One for each limit that the strip misses.
     """
     is_band = entry.get("role") == "band"
     lines = [*_too_much(entry, limits, invalid_percent), *_too_sharp(entry, limits)]
     return tuple(
-        f"{entry['name']} has {found}. {_BAND if is_band else action}" for found, action in lines
+        Missed(f"{entry['name']} has {found}.", _BAND if is_band else action)
+        for found, action in lines
     )
 
 

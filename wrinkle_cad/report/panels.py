@@ -8,7 +8,7 @@ from typing import Any, Final
 from wrinkle_cad import settings
 
 from .markup import Element, node
-from .numbers import TIMES, Numbers
+from .numbers import Numbers
 from .views import MeshView, StripView
 
 _IDLE: Final = "Point at the strip: the same bridge lights up in every view."
@@ -28,20 +28,19 @@ _PATTERN_LAYERS: Final = (
 def figures_panel(numbers: Numbers) -> Element:
     """The key figures of the wrinkle that asks most of a sheet, as tiles."""
     worst = _worst_strip(numbers)
-    entry, said = f"/strips/{worst}", f"/verdict/strips/{worst}"
+    entry = f"/strips/{worst}"
     p95 = node(
         "small",
-        "but for a twentieth of the length at most ",
+        "mostly below ",
         numbers.show(f"{entry}/p95_strain_percent", "%", 3),
     )
     tiles = (
-        ("Strain", [numbers.show(f"{entry}/max_strain_percent", "%", 3), p95]),
+        ("Largest strain", [numbers.show(f"{entry}/max_strain_percent", "%", 3), p95]),
         ("Sharpest crease", _crease(numbers, entry)),
         ("Smallest bend radius", _radius(numbers, entry)),
         ("Largest twist", [numbers.show(f"{entry}/max_twist_deg", "°", 2)]),
-        ("Developable share of the rails", [numbers.show(f"{entry}/developable_share", "", 3)]),
+        ("Developable share", [numbers.show(f"{entry}/developable_share", "", 3)]),
         ("Area of the pattern", [numbers.show(f"{entry}/area_pattern_mm2", "mm²", 1)]),
-        ("Price of developability", [numbers.show(f"{said}/price_of_developability", TIMES, 2)]),
     )
     shown = node(
         "dl",

@@ -94,9 +94,14 @@ def judge(entries: Sequence[Mapping[str, Any]], limits: Limits) -> Verdict:
     shown = [entry for entry in entries if entry["name"] in names]
     state = _worst(leading)
     reasons = tuple(line for strip in leading for line in strip.missed)
+    found = [
+        each.found
+        for entry in shown
+        for each in missed_limits(entry, limits, invalid_percent(entry))
+    ]
     return Verdict(
         state=state,
-        headline=_headline(leading, shown, limits, reasons),
+        headline=_headline(leading, shown, limits, found),
         meaning=_MEANING[state] + _overlap_words(shown),
         limits=limits.stated,
         passed=None if not limits.stated else not reasons,
@@ -116,7 +121,10 @@ def invalid_percent(entry: Mapping[str, Any]) -> float:
 
 def _judge_strip(entry: Mapping[str, Any], limits: Limits) -> StripVerdict:
     seams, least = entry["seam_lengths_mm"], float(entry["least_bending"])
-    missed = missed_limits(entry, limits, invalid_percent(entry))
+    missed = tuple(
+        f"{each.found} {each.action}"
+        for each in missed_limits(entry, limits, invalid_percent(entry))
+    )
     return StripVerdict(
         name=entry["name"],
         role=entry.get("role", "strip"),
@@ -167,14 +175,14 @@ def _headline(
     strips: Sequence[StripVerdict],
     entries: Sequence[Mapping[str, Any]],
     limits: Limits,
-    reasons: Sequence[str],
+    found: Sequence[str],
 ) -> str:
     """PASS or FAIL with limits, in words; the state without."""
     if limits.stated:
         named = f" for {limits.material}" if limits.material else ""
-        if reasons:
-            more = f" And {len(reasons) - 1} more." if len(reasons) > 1 else ""
-            return f"FAIL{named}: {reasons[0]}{more}"
+        if found:
+            more = f" And {len(found) - 1} more." if len(found) > 1 else ""
+            return f"FAIL{named}: {found[0]}{more}"
         return f"PASS{named}: {_kept_words(entries, limits)}."
     if len(strips) == 1:
         return strips[0].sentence
