@@ -41,8 +41,8 @@ PACKAGES_OF = {
     "pattern": {"numpy", "numba", "scipy", "shapely", "ezdxf"},
 }
 """What two folders that are of use without CAD may import, beside the standard library."""
-IMPORTED_WHEN_CALLED = {"pattern": {"matplotlib"}}
-"""A PDF is drawn with matplotlib; everything else of the pattern does without."""
+IMPORTED_WHEN_CALLED = {"pattern": {"matplotlib", "spyrrow"}}
+"""A PDF is drawn with matplotlib, sheets are nested with spyrrow; all else does without."""
 
 LONGEST_MODULE = 400
 TYPICAL_MODULE = 150

@@ -175,6 +175,12 @@ TEXT_HEIGHT_MIN: Final = 1.0
 FLAT_FOLD: Final = 1e-7
 """rad; rulings folded by less are neither mountain nor valley."""
 
+NESTING_GAP: Final = 3.0
+"""mm between pieces that are nested on a sheet of material."""
+
+NESTING_SECONDS: Final = 10
+"""s that each sheet is searched for a closer layout."""
+
 PIECE_GAP: Final = 10.0
 """mm between the pieces of one drawing."""
 

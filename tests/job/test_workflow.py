@@ -257,3 +257,18 @@ def test_a_materials_thickness_reaches_the_pattern(tmp_path: Path) -> None:
     )
     assert any("bend radius" in line for line in done.missed_limits)
     assert "calf" in (tmp_path / "out" / "vamp_strip.dxf").read_text()
+
+
+def test_sheets_of_nested_pieces_are_outputs_like_the_others(tmp_path: Path) -> None:
+    job = Job(
+        input=EXAMPLE, output_dir=tmp_path, sheet=(300.0, 200.0), nest_seconds=0, quantity=2
+    )
+    done = run(job)
+    sheet = tmp_path / "vamp_strip.sheet1.dxf"
+    assert sheet in done.outputs
+    told = json.loads((tmp_path / "vamp_strip.json").read_text())
+    assert told["outputs"]["sheet1.dxf"]["bytes"] == sheet.stat().st_size
+    assert "Sheet 1 of" in next(f["message"] for f in told["findings"] if f["code"] == "nested")
+    run(job)
+    sheet.write_text("somebody else's")
+    assert "sheet1.dxf" in fail(job).message

@@ -59,6 +59,27 @@ class FileSettings:
     pdf: bool = field(
         default=False, metadata=option("write the pattern as PDF, 1:1 on A4 sheets, too")
     )
+    sheet: tuple[float, float] | None = field(
+        default=None,
+        metadata=option(
+            "nest the pieces on sheets of this length along the grain and width; a DXF for each",
+            unit="mm",
+            above=0.0,
+            most=100_000.0,
+            when_none="no sheets",
+            metavar="LENGTHxWIDTH",
+        ),
+    )
+    nest_seconds: int = field(
+        default=settings.NESTING_SECONDS,
+        metadata=option(
+            "seconds that each sheet is searched for a closer layout; 0 gives the same layout on"
+            " every machine",
+            least=0,
+            most=86_400,
+            metavar="N",
+        ),
+    )
     step_schema: settings.StepSchema = field(
         default=settings.STEP_SCHEMA, metadata=option("schema of the STEP file")
     )

@@ -13,7 +13,7 @@ from wrinkle_cad.wrinkle.loudness import findings_in_the_result
 
 from .job import Job
 from .outcome import JobDone, JobFailed, Progress
-from .outputs import hashes_of, output_paths, outputs_together
+from .outputs import check_outputs_are_ours, hashes_of, output_paths, outputs_together
 from .phases import PhaseClock
 from .summary import summary_of, to_json
 
@@ -122,8 +122,9 @@ def _make(job: Job, chosen: Chosen, clock: PhaseClock) -> Made:
     with clock.phase("pattern"):
         turned_over = () if upper is None else upper.turned_over
         pattern = pattern_of_strips(strips, piece_settings, turned_over=turned_over)
+        sheets = () if job.sheet is None else pattern.nested(job.sheet, seconds=job.nest_seconds)
     name = "" if chosen.upper is None else chosen.upper.name
-    return Made(strips, pattern, limits, upper, name or job.name)
+    return Made(strips, pattern, limits, upper, name or job.name, sheets)
 
 
 def _check_no_waves(job: Job) -> None:
@@ -139,12 +140,25 @@ def _judged(job: Job, file: CadFile, chosen: Chosen, made: Made) -> dict[str, An
         *(made.upper.findings if made.upper is not None else ()),
         *(finding for strip in made.strips for finding in findings_on(strip)),
         *made.pattern.findings,
+        *_sheet_findings(made),
     ]
     reports = [strip.report for strip in made.strips]
     summary = summary_of(job, file, chosen, reports, findings, made.limits)
     if made.upper is not None:
         summary["stitch"] = made.upper.stitch_as_json()
     return summary
+
+
+def _sheet_findings(made: Made) -> Iterator[Finding]:
+    """What the user should know about the sheets."""
+    for number, sheet in enumerate(made.sheets, start=1):
+        yield Finding(
+            "nested",
+            "info",
+            f"Sheet {number} of {len(made.sheets)} holds {len(sheet.pieces)} pieces on "
+            f"{sheet.used_length:.0f} of {sheet.size[0]:g} mm, which they use to "
+            f"{100.0 * sheet.utilisation:.1f}%.",
+        )
 
 
 def findings_on(strip: TriangulatedStrip) -> Iterator[Finding]:
@@ -157,7 +171,8 @@ def _write(job: Job, made: Made, summary: dict[str, Any], clock: PhaseClock) -> 
     from .parts import output_kinds
     from .writing import page_of, write_flat, write_shapes
 
-    kinds = output_kinds(job)
+    kinds = (*output_kinds(job), *made.sheet_kinds)
+    check_outputs_are_ours(job, made.sheet_kinds)
     with outputs_together(job, kinds) as paths:
         with clock.phase("write"):
             write_shapes(job, made, paths)

@@ -16,6 +16,7 @@ from .parts import write_pattern
 
 if TYPE_CHECKING:
     from wrinkle_cad.cad.exchange.shapes import Part
+    from wrinkle_cad.pattern.piece.nesting import NestedSheet
     from wrinkle_cad.report.limits import Limits
     from wrinkle_cad.report.views import MeshView
     from wrinkle_cad.wrinkle.cut_pattern import Pattern
@@ -45,6 +46,13 @@ class Made:
     """The upper with the wrinkles stitched in; None when the file has no upper."""
     upper_name: str = ""
     """What the file calls the upper."""
+    sheets: tuple[NestedSheet, ...] = ()
+    """Of material, with the pieces nested on them, where they are asked for."""
+
+    @property
+    def sheet_kinds(self) -> tuple[str, ...]:
+        """The endings of the sheets' files."""
+        return tuple(f"sheet{number}.dxf" for number in range(1, len(self.sheets) + 1))
 
 
 def write_shapes(job: Job, made: Made, paths: Mapping[str, Path]) -> None:
@@ -71,7 +79,19 @@ def write_flat(job: Job, made: Made, paths: Mapping[str, Path]) -> list[dict[str
         InputError: a profile cannot be used.
         ExportError: a file cannot be written.
     """
-    return write_pattern(job, made.pattern, paths, timestamp_of(job))
+    from wrinkle_cad.wrinkle.cut_pattern import write_sheets
+
+    moment = timestamp_of(job)
+    changed = write_pattern(job, made.pattern, paths, moment)
+    write_sheets(
+        [paths[kind] for kind in made.sheet_kinds],
+        made.sheets,
+        profile=job.profile,
+        version=job.dxf_version,
+        curves=job.curves,
+        timestamp=moment,
+    )
+    return changed
 
 
 def page_of(made: Made, summary: Mapping[str, Any]) -> str:

@@ -67,5 +67,7 @@ def _value(kind: Kind, text: str) -> Any:
     if text in kind.choices or kind.base is None:
         return text
     if kind.part is not None:
-        return tuple(_value(kind.part, part.strip()) for part in text.split(",") if part.strip())
+        # 1200x600 is how sheets are spoken of.
+        listed = text.replace("x", ",") if kind.part.base is float else text
+        return tuple(_value(kind.part, part.strip()) for part in listed.split(",") if part.strip())
     return kind.base(text)

@@ -26,6 +26,7 @@ from wrinkle_cad.strip.sampled_strip import SampledStrip
 if TYPE_CHECKING:
     from build123d import Sketch
 
+    from wrinkle_cad.pattern.piece.nesting import NestedSheet
     from wrinkle_cad.strip.flat.unrolling import Unrolling
 
 
@@ -77,6 +78,24 @@ class Pattern:
             if notch.side == side
         }
         return tuple(sorted(arcs))
+
+    def nested(
+        self, sheet: tuple[float, float], *, seconds: int = settings.NESTING_SECONDS
+    ) -> tuple[NestedSheet, ...]:
+        """Nests the pieces, in their quantities, on sheets of material, their grain along x.
+
+        Args:
+            sheet: mm, length along the grain and width.
+            seconds: that each sheet is searched for a closer layout; 0 gives the same layout on
+                every machine.
+
+        Raises:
+            InputError: a piece does not fit on a sheet.
+        """
+        from wrinkle_cad.pattern.piece.compacting import compacted
+        from wrinkle_cad.pattern.piece.nesting import nested
+
+        return tuple(compacted(one, seconds=seconds) for one in nested(self.pieces, sheet=sheet))
 
     @property
     def findings(self) -> tuple[Finding, ...]:
@@ -157,6 +176,48 @@ class Pattern:
         from wrinkle_cad.pattern.formats.pdf import write_pdf
 
         return write_pdf(Path(path), self.pieces, profile=profile)
+
+
+def write_sheets(
+    paths: Sequence[Path],
+    sheets: Sequence[NestedSheet],
+    *,
+    profile: str | Path = settings.DXF_PROFILE,
+    version: settings.DxfVersion | None = None,
+    curves: settings.Curves = "lines",
+    timestamp: datetime | None = None,
+) -> tuple[Finding, ...]:
+    """Writes each sheet into a DXF file of its own and returns what had to be changed.
+
+    Args:
+        paths: one for each sheet; replaced as a whole.
+        sheets: of ``Pattern.nested``.
+        profile: as for ``Pattern.export_dxf``, and likewise the others; ``aama`` and ``astm``
+            have no sheets.
+        version: of DXF.
+        curves: of the cut lines.
+        timestamp: the time in the files.
+
+    Raises:
+        InputError: an option does not fit.
+        ExportError: a file could not be written.
+    """
+    from wrinkle_cad.pattern.formats.dxf import write_dxf
+
+    moment = _moment() if timestamp is None else timestamp
+    return tuple(
+        finding
+        for path, sheet in zip(paths, sheets, strict=True)
+        for finding in write_dxf(
+            path,
+            sheet.pieces,
+            profile=profile,
+            version=version,
+            curves=curves,
+            timestamp=moment,
+            is_laid=True,
+        )
+    )
 
 
 def _moment() -> datetime:

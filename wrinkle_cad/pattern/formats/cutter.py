@@ -36,6 +36,7 @@ def cutter_document(
     release: str,
     curves: Curves,
     test_square: bool,
+    has_room_beside: bool = True,
 ) -> tuple[DxfDocument, tuple[Finding, ...]]:
     """Returns a document with all pieces where they stand, and which texts had to be changed.
 
@@ -45,12 +46,13 @@ def cutter_document(
         release: R2000 or later.
         curves: how the contours are written.
         test_square: add the square that shows the scale.
+        has_room_beside: whether texts may stand beside their piece.
     """
     document = ezdxf.new(release, units=ezdxf.units.MM)
     _add_tables(document, profile)
     findings: list[Finding] = []
     for piece in pieces:
-        drawing = draw(piece)
+        drawing = draw(piece, has_room_beside=has_room_beside)
         _write_strokes(document.modelspace(), drawing, piece, profile, curves)
         findings += _write_labels(document.modelspace(), drawing, piece, profile)
     if test_square:

@@ -52,18 +52,27 @@ class Drawing:
     labels: tuple[Label, ...]
 
 
-def draw(piece: PatternPiece) -> Drawing:
-    """Returns the strokes, spots and labels of a piece, in the order in which a machine acts."""
+def draw(piece: PatternPiece, *, has_room_beside: bool = True) -> Drawing:
+    """Returns the strokes, spots and labels of a piece, in the order in which a machine acts.
+
+    Args:
+        piece: what is drawn.
+        has_room_beside: False on a sheet full of pieces: a piece that has no room for its texts
+            then has its name only, or nothing.
+    """
     strokes: list[Stroke] = []
     if piece.has_allowance:
         strokes.append(Stroke("sew", piece.sew_line, is_closed=True))
     lettered = lettering(piece, piece.texts)
+    if lettered.leader is not None and not has_room_beside:
+        lettered = lettering(piece, (piece.name,))
     for line, fold in zip(lettered.rulings, lettered.ruling_fold, strict=True):
         strokes.append(Stroke("mountain" if fold > 0.0 else "valley", line))
     strokes += [Stroke("grain", line) for line in arrow_lines(lettered.grain_line)]
     if piece.stretch_line is not None:
         strokes += [Stroke("stretch", line) for line in arrow_lines(piece.stretch_line)]
-    if lettered.leader is not None:
+    is_told = has_room_beside or lettered.leader is None
+    if lettered.leader is not None and is_told:
         strokes.append(Stroke("text", lettered.leader))
     for notch in piece.notches:
         # Without an allowance a slit would go into the product.
@@ -72,7 +81,10 @@ def draw(piece: PatternPiece) -> Drawing:
     strokes += [Stroke("cut", outline, is_closed=True) for outline in piece.cut_outs]
     strokes.append(Stroke("cut", piece.cut_line, is_closed=True))
     spots = tuple(Spot("punch", frozen(hole)) for hole in piece.drill_holes)
-    labels = (Label("text", row.text, row.position, row.height, row.angle) for row in lettered.rows)
+    labels = (
+        Label("text", row.text, row.position, row.height, row.angle)
+        for row in (lettered.rows if is_told else ())
+    )
     return Drawing(tuple(strokes), spots, tuple(labels))
 
 

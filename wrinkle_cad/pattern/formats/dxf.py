@@ -59,6 +59,7 @@ def dxf_file(
     test_square: bool = False,
     style: str = settings.STYLE_NAME,
     timestamp: datetime | None = None,
+    is_laid: bool = False,
 ) -> DxfFile:
     """Returns a DXF file of all pieces, laid out side by side at one scale.
 
@@ -70,12 +71,19 @@ def dxf_file(
         test_square: add a square of 100 mm to check the scale on the machine.
         style: what all pieces belong to, as files of pieces (aama, astm) state it.
         timestamp: what the file says about when it was made; ``EPOCH`` if None.
+        is_laid: the pieces stay where they are, as on a sheet on which they were nested; texts
+            without room inside their piece are left out.
 
     Raises:
         InputError: no pieces, an unknown option, or options that exclude each other.
     """
     chosen = profile if isinstance(profile, Profile) else profile_from(profile)
     _check_options(pieces, chosen, version, curves)
+    if is_laid and chosen.is_blocks:
+        raise InputError(
+            f"Sheets are drawings for a cutter, and {chosen.name} is a file of pieces that pattern "
+            "CAD nests itself. Choose the profile cutter."
+        )
     moment = timestamp or EPOCH
     release = version or ("R12" if chosen.is_blocks else settings.DXF_VERSION)
     stream = io.StringIO()
@@ -93,11 +101,12 @@ def dxf_file(
                 findings = (*findings, _layout_blocks_finding(chosen.name, release))
         else:
             document, findings = cutter_document(
-                laid_out(pieces, reach=text_box),
+                pieces if is_laid else laid_out(pieces, reach=text_box),
                 chosen,
                 release="R2000" if release == "R12" else release,
                 curves=curves,
                 test_square=test_square,
+                has_room_beside=not is_laid,
             )
         _export(document, stream, is_r12=release == "R12", is_blocks=chosen.is_blocks)
     return DxfFile(stamped(stream.getvalue(), moment).encode("ascii"), findings)
@@ -123,6 +132,7 @@ def write_dxf(
     test_square: bool = False,
     style: str | None = None,
     timestamp: datetime | None = None,
+    is_laid: bool = False,
 ) -> tuple[Finding, ...]:
     """Writes a DXF file, whole or not at all, and returns the findings of ``dxf_file``.
 
@@ -142,11 +152,12 @@ def write_dxf(
         test_square=test_square,
         style=path.stem if style is None else style,
         timestamp=timestamp,
+        is_laid=is_laid,
     )
     try:
         write_atomically(path, made.content)
     except OSError as error:
-        raise ExportError(path, "DXF", f"{error.strerror} - check the folder") from error
+        raise ExportError(path, "DXF", f"{error.strerror}. Check the folder.") from error
     return made.findings
 
 
@@ -154,26 +165,26 @@ def _check_options(
     pieces: Sequence[PatternPiece], profile: Profile, version: str | None, curves: str
 ) -> None:
     if not pieces:
-        raise InputError("DXF - no pieces - at least one - make a pattern first")
+        raise InputError("There are no pieces to write as DXF. Make a pattern first.")
     if version is not None and version not in VERSIONS:
-        raise InputError(f"DXF version {version!r} - one of {', '.join(VERSIONS)} - choose one")
+        raise InputError(f"The DXF version is {version!r}. Choose one of {', '.join(VERSIONS)}.")
     if curves not in CURVES:
-        raise InputError(f"DXF curves {curves!r} - one of {', '.join(CURVES)} - choose one")
+        raise InputError(f"The curves are {curves!r}. Choose one of {', '.join(CURVES)}.")
     if profile.is_blocks and curves != "lines":
         raise InputError(
-            f"DXF curves {curves} - profile {profile.name} - its contours are polylines - "
-            "choose lines"
+            f"The curves are {curves}, and contours of the profile {profile.name} are polylines. "
+            "Choose lines."
         )
     if version == "R12" and curves == "splines":
-        raise InputError("DXF curves splines - version R12 has none - R2000 or later - choose it")
+        raise InputError("DXF R12 has no splines. Choose the version R2000 or later.")
 
 
 def _layout_blocks_finding(profile: str, release: str) -> Finding:
     return Finding(
         "layout-blocks",
         "warning",
-        f"DXF {profile} as {release} - the release needs layout blocks that are no pieces - "
-        "Gerber reads blocks of pieces only - use R12 for it",
+        f"The {profile} file is {release}, which needs layout blocks that are no pieces; Gerber "
+        "reads blocks of pieces only. Use R12 for it.",
     )
 
 

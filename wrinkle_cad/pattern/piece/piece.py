@@ -7,6 +7,7 @@ one (the upper's outside decides), or for the other foot, Q lies below and ``is_
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, replace
 from typing import Final
 
@@ -132,7 +133,18 @@ class PatternPiece:
 
     def moved(self, offset: Floats) -> PatternPiece:
         """Returns the piece shifted by ``offset``: (2,) mm."""
-        return _mapped(self, np.array([1.0, 1.0]), offset)
+        return _mapped(self, (1.0, 0.0, 0.0, 1.0), offset)
+
+    def turned_round(self) -> PatternPiece:
+        """Returns the piece turned by half a turn about the origin, right side up as before."""
+        return _mapped(self, (-1.0, 0.0, 0.0, -1.0), np.zeros(2))
+
+    def with_grain_along_x(self) -> PatternPiece:
+        """Returns the piece turned about the origin until its grain line runs along +x."""
+        x, y = self.grain_line[1] - self.grain_line[0]
+        length = math.hypot(x, y)
+        cosine, sine = float(x) / length, float(y) / length
+        return _mapped(self, (cosine, sine, -sine, cosine), np.zeros(2))
 
     def turned_over(self) -> PatternPiece:
         """Returns the same piece as seen from its other side, which becomes the right one.
@@ -172,7 +184,7 @@ def _reversed(outline: Outline) -> Outline:
 
 
 def _mirrored(piece: PatternPiece) -> PatternPiece:
-    turned = _mapped(piece, np.array([1.0, -1.0]), np.zeros(2))
+    turned = _mapped(piece, (1.0, 0.0, 0.0, -1.0), np.zeros(2))
     return replace(
         turned,
         cut=_reversed(turned.cut),
@@ -182,9 +194,18 @@ def _mirrored(piece: PatternPiece) -> PatternPiece:
     )
 
 
-def _mapped(piece: PatternPiece, scale: Floats, offset: Floats) -> PatternPiece:
+def _mapped(
+    piece: PatternPiece, matrix: tuple[float, float, float, float], offset: Floats
+) -> PatternPiece:
+    """Returns a piece with all its points under a matrix, row by row, and then an offset."""
+    xx, xy, yx, yy = matrix
+
+    def turned(points: Floats) -> Floats:
+        x, y = points[..., 0], points[..., 1]
+        return np.stack((xx * x + xy * y, yx * x + yy * y), axis=-1)
+
     def placed(points: Floats) -> Floats:
-        return frozen(points * scale + offset)
+        return frozen(turned(points) + offset)
 
     def placed_outline(outline: Outline) -> Outline:
         return make_outline(placed(outline.points), outline.sides, outline.corners)
@@ -194,7 +215,7 @@ def _mapped(piece: PatternPiece, scale: Floats, offset: Floats) -> PatternPiece:
             notch,
             seam=placed(notch.seam),
             position=placed(notch.position),
-            direction=frozen(notch.direction * scale),
+            direction=frozen(turned(notch.direction)),
         )
         for notch in piece.notches
     )

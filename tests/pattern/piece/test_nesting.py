@@ -1,0 +1,119 @@
+"""Pieces on sheets: none on another, all inside, the grain kept, and how full the sheets are."""
+
+from __future__ import annotations
+
+import time
+from collections import Counter
+from dataclasses import replace
+
+import ezdxf
+import numpy as np
+import pytest
+import shapely
+
+from tests.pattern import strips
+from wrinkle_cad.errors import InputError
+from wrinkle_cad.pattern.check.judging import judge_dxf
+from wrinkle_cad.pattern.formats.dxf import dxf_file, write_dxf
+from wrinkle_cad.pattern.piece.compacting import compacted
+from wrinkle_cad.pattern.piece.making import make_pieces
+from wrinkle_cad.pattern.piece.nesting import nested
+from wrinkle_cad.pattern.piece.options import PieceSettings
+
+SETTINGS = PieceSettings(seam_allowance=(5.0,) * 4)
+
+
+def curved_strip(radius, width, length):
+    angle = np.linspace(-0.5, 0.5, 25) * length / radius
+    ring = np.column_stack((np.sin(angle), np.cos(angle), 0.0 * angle))
+    return strips.unrolled(radius * ring, (radius + width) * ring, ("length",))
+
+
+def strips_and_bands(count):
+    random = np.random.default_rng(5)
+    pieces = []
+    for k in range(count // 2):
+        strip = curved_strip(*(random.uniform(*span) for span in ((150, 500), (20, 40), (90, 180))))
+        band = strips.lens(random.uniform(90.0, 180.0), random.uniform(10.0, 25.0))
+        for made, name in ((strip, "strip"), (band, "band")):
+            pieces += make_pieces(*made, name=f"{name} {k}", settings=SETTINGS)
+    return pieces
+
+
+def check_sheets(sheets, pieces, size, gap=1.5):
+    for sheet in sheets:
+        regions = [shapely.Polygon(piece.cut_line) for piece in sheet.pieces]
+        frame = shapely.box(0.0, 0.0, *size)
+        assert all(frame.contains(region) for region in regions)
+        first, second = shapely.STRtree(regions).query(regions, "dwithin", distance=gap)
+        assert np.array_equal(first, second)
+        for piece in sheet.pieces:
+            x, y = piece.grain_line[1] - piece.grain_line[0]
+            assert abs(y) < 1e-9 * abs(x)
+        assert not any(piece.is_mirrored for piece in sheet.pieces)
+    found = Counter(i for sheet in sheets for i in sheet.index)
+    assert found == {i: piece.quantity for i, piece in enumerate(pieces)}
+
+
+def test_twenty_strips_and_bands_fill_two_thirds_of_what_they_use():
+    pieces, size = strips_and_bands(20), (600.0, 300.0)
+    began = time.perf_counter()
+    sheets = nested(pieces, sheet=size)
+    check_sheets(sheets, pieces, size)
+    assert len(sheets) == 1
+    assert sheets[0].utilisation > 0.6
+    closer = compacted(sheets[0], seconds=8)
+    check_sheets([closer], pieces, size)
+    assert closer.used_length <= sheets[0].used_length
+    assert closer.utilisation >= 0.65
+    # The search takes 8 s of it.
+    assert time.perf_counter() - began < 120.0
+
+
+def test_what_one_sheet_cannot_hold_goes_on_the_next_ones():
+    (piece,) = make_pieces(*strips.rectangle(120.0, 40.0), name="strap")
+    pieces = [replace(piece, quantity=7)]
+    sheets = nested(pieces, sheet=(250.0, 100.0))
+    # Two beside each other in two rows on each.
+    assert [len(sheet.pieces) for sheet in sheets] == [4, 3]
+    check_sheets(sheets, pieces, (250.0, 100.0))
+
+
+def test_the_grain_decides_how_a_piece_lies():
+    settings = PieceSettings(grain="across")
+    pieces = make_pieces(*strips.rectangle(120.0, 40.0), name="strap", settings=settings)
+    (sheet,) = nested(pieces, sheet=(200.0, 200.0))
+    assert np.ptp(sheet.pieces[0].cut_line, axis=0) == pytest.approx((40.0, 120.0))
+
+
+def test_a_piece_larger_than_the_sheet_is_refused():
+    pieces = make_pieces(*strips.rectangle(120.0, 40.0), name="strap")
+    with pytest.raises(InputError, match=r"strap is 120\.0 x 40\.0 mm"):
+        nested(pieces, sheet=(100.0, 100.0))
+
+
+def test_without_a_search_the_layout_is_the_same_every_time():
+    pieces = strips_and_bands(6)
+    one, other = (nested(pieces, sheet=(400.0, 200.0)) for _ in range(2))
+    assert compacted(one[0], seconds=0) is one[0]
+    for first, second in zip(one[0].pieces, other[0].pieces, strict=True):
+        assert np.array_equal(first.cut_line, second.cut_line)
+
+
+def test_a_sheets_file_has_the_pieces_where_they_lie_and_no_text_beside_them(tmp_path):
+    pieces = strips_and_bands(6)
+    (sheet,) = nested(pieces, sheet=(400.0, 300.0))
+    path = tmp_path / "sheet.dxf"
+    write_dxf(path, sheet.pieces, is_laid=True)
+    assert judge_dxf(path).is_clean
+    space = ezdxf.readfile(path).modelspace()
+    for contour, piece in zip(space.query("*[layer=='CUT']"), sheet.pieces, strict=True):
+        assert np.allclose(np.array(contour.get_points("xy")), piece.cut_line, atol=2e-6)
+    regions = [shapely.Polygon(piece.cut_line) for piece in sheet.pieces]
+    for text in space.query("TEXT"):
+        assert any(
+            region.contains(shapely.Point(text.dxf.insert.x, text.dxf.insert.y))
+            for region in regions
+        )
+    with pytest.raises(InputError, match="Choose the profile cutter"):
+        dxf_file(sheet.pieces, profile="aama", is_laid=True)
