@@ -20,8 +20,8 @@ class Finding:
     Example:
         >>> from wrinkle_cad import WrinkleStrip
         >>> p, q = [[0, 0, 0], [50, 0, 9], [100, 0, 0]], [[0, 30, 0], [50, 30, 9], [100, 30, 0]]
-        >>> [finding.code for finding in WrinkleStrip(p, q[::-1]).findings]
-        ['rails-turned-alike']
+        >>> WrinkleStrip(p, q[::-1]).findings[0].code
+        'rails-turned-alike'
     """
 
     code: str

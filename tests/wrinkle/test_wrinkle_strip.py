@@ -163,3 +163,10 @@ def test_cadquery_shapes_are_equal_guests() -> None:
     strip = WrinkleStrip(p, q)
     assert strip.report.is_developable
     assert cq.Shell(strip.shell().wrapped).isValid()
+
+
+def test_a_flat_strip_has_no_bend_radius_in_the_json() -> None:
+    report = WrinkleStrip([[0, 0, 0], [90, 0, 0]], [[0, 20, 0], [90, 30, 0]]).report
+    assert report.smallest_bend_radius_mm == np.inf
+    assert report.as_json()["smallest_bend_radius_mm"] is None
+    assert report.as_json()["inner_bend_radius_mm"] is None

@@ -132,8 +132,10 @@ class StripReport:
         return self.state == "developable"
 
     def as_json(self) -> dict[str, Any]:
-        """The report as plain values, as it stands in NAME.json."""
+        """The report as plain values, as it stands in NAME.json; no bend has no radius: None."""
         entry = {field.name: getattr(self, field.name) for field in fields(self)}
+        radii = [name for name in entry if "radius" in name and entry[name] == math.inf]
+        entry.update(dict.fromkeys(radii))
         seams = {rail: asdict(seam) for rail, seam in self.seam_lengths_mm.items()}
         gaps = [gap_entry(gap) for gap in self.gaps]
         creases = [asdict(crease) for crease in self.creases]
