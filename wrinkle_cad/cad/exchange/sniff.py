@@ -22,6 +22,9 @@ BREP: Final = "BREP"
 IGES: Final = "IGES"
 
 _GZIP = b"\x1f\x8b"
+_MOST_MEMBERS: Final = 100_000
+_FIRST_CHUNK: Final = 512
+_LAST_CHUNK: Final = 1 << 20
 _POINTER = b"version https://git-lfs.github.com/spec/"
 _BREP_HEAD = re.compile(rb"\s*(DBRep_DrawableShape|CASCADE Topology V|Open CASCADE Topology V)")
 # Atomic: without it, many comments before something else take time exponential in their number.
@@ -114,21 +117,32 @@ def _too_large(path: Path, found: str, size_limit: int) -> InputError:
 def _unpack(path: Path, packed: bytes, size_limit: int) -> bytes:
     """Unpacks every member of a gzip file, never more than the limit."""
     content = bytearray()
-    rest = packed
+    at = members = 0
     try:
-        while rest.startswith(_GZIP):
-            stream = zlib.decompressobj(wbits=zlib.MAX_WBITS | 16)
-            content += stream.decompress(rest, size_limit + 1 - len(content))
-            if len(content) > size_limit:
-                raise _too_large(
-                    path, f"more than {size_limit / 2**20:.1f} MiB unpacked", size_limit
-                )
-            if not stream.eof:
+        while packed.startswith(_GZIP, at):
+            members += 1
+            if members > _MOST_MEMBERS:
                 raise InputError(
-                    f"Cannot read {path.name}: gzip-compressed and cut short after"
-                    f" {len(packed)} bytes. Copy or download the file again."
+                    f"Cannot read {path.name}: more than {_MOST_MEMBERS} gzip files in one. Unpack"
+                    " it first."
                 )
-            rest = stream.unused_data
+            stream = zlib.decompressobj(wbits=zlib.MAX_WBITS | 16)
+            step = _FIRST_CHUNK
+            while not stream.eof:
+                chunk = packed[at : at + step]
+                content += stream.decompress(chunk, size_limit + 1 - len(content))
+                if len(content) > size_limit:
+                    raise _too_large(
+                        path, f"more than {size_limit / 2**20:.1f} MiB unpacked", size_limit
+                    )
+                if not chunk:
+                    raise InputError(
+                        f"Cannot read {path.name}: gzip-compressed and cut short after"
+                        f" {len(packed)} bytes. Copy or download the file again."
+                    )
+                at += len(chunk) - len(stream.unused_data)
+                # From a few bytes on: many small members must not cost a long chunk each.
+                step = min(2 * step, _LAST_CHUNK)
     except zlib.error as error:
         raise InputError(
             f"Cannot read {path.name}: gzip-compressed and damaged ({error}). Copy the file again."

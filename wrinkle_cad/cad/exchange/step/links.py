@@ -16,8 +16,14 @@ from .text import statements
 _HEAD: Final = re.compile(rb"#\s*(\w+)\s*=\s*(\(?)\s*(\w*)")
 # Whatever stands after the sign: what is no number is in no file and so a fault.
 _REFERENCE: Final = re.compile(rb"#\s*([^\s,()#]*)")
-_LINE: Final = re.compile(rb"^\s*#\d+\s*=", re.MULTILINE)
-_HUGE: Final = re.compile(rb"[-+.\d]*[\d.]E\+?(?:[3-9]\d|\d{3,})\b|\bNaN\b|\bINF\b", re.IGNORECASE)
+# No two matches try the same bytes: a run of blanks, digits or signs costs its length, not the
+# square of it.
+_LINE: Final = re.compile(rb"^[ \t\r]*+#\d++\s*+=", re.MULTILINE)
+_HUGE: Final = re.compile(rb"(?<=[\d.])E\+?(?:[3-9]\d|\d{3,})\b|\bNaN\b|\bINF\b", re.IGNORECASE)
+_MANTISSA: Final = re.compile(rb"[-+.\d]*\Z")
+_SHOWN: Final = 40
+_LONGEST_ID: Final = 18
+"""Digits: what CAD systems count with; the kernel takes longer ones for another entity's."""
 
 _POINT: Final = r"\w*POINT\w*"
 _CURVE: Final = (
@@ -76,6 +82,9 @@ def link_fault(text: bytes) -> str | None:
     bodies = dict(_bodies(text))
     if len(bodies) < len(_LINE.findall(text)) // 2:
         return "a string or a comment that does not end swallows most of its entities"
+    longest = max(bodies, key=len, default=b"")
+    if len(longest) > _LONGEST_ID:
+        return f"entity #{_shown(longest)} has an id of {len(longest)} digits"
     used: set[bytes] = set()
     for number, (keyword, references, _) in bodies.items():
         for reference in references:
@@ -91,7 +100,10 @@ def link_fault(text: bytes) -> str | None:
     for number in used:
         huge = _HUGE.search(bodies[number][2])
         if huge is not None:
-            return f"entity #{_shown(number)} holds the number {_shown(huge[0])}"
+            before = bodies[number][2][max(0, huge.start() - _SHOWN) : huge.start()]
+            mantissa = _MANTISSA.search(before)
+            shown = (b"" if mantissa is None else mantissa[0]) + huge[0]
+            return f"entity #{_shown(number)} holds the number {_shown(shown)}"
     return None
 
 
@@ -127,4 +139,4 @@ _NEEDS_ALL: Final = frozenset(
 
 
 def _shown(word: bytes) -> str:
-    return word[:40].decode("ascii", "replace")
+    return word[:_SHOWN].decode("ascii", "replace")
