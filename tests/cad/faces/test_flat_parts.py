@@ -106,15 +106,22 @@ def test_the_comparison_sees_a_wrong_area_and_a_moved_point() -> None:
 
 
 def region(rng: np.random.Generator) -> tuple[b3d.Edge, b3d.Edge]:
-    """Two splines in one plane, somewhere, that do not meet."""
-    length, width = rng.uniform(50.0, 300.0), rng.uniform(10.0, 60.0)
-    count, reach = int(rng.integers(4, 14)), rng.uniform(0.0, 0.45) * width
-    x, at = np.linspace(0.0, length, count), pose(rng)
-    rails = [
-        at * b3d.Spline(*[(float(a), float(b), 0.0) for a, b in zip(x, y, strict=True)])
-        for y in (rng.uniform(-reach, reach, count), width + rng.uniform(-reach, reach, count))
-    ]
-    return rails[0], rails[1]
+    """Two splines in one plane, somewhere, that bound a region with the lines between their ends.
+
+    Splines overshoot: now and then a rail crosses the line between two ends, and is drawn anew.
+    """
+    while True:
+        length, width = rng.uniform(50.0, 300.0), rng.uniform(10.0, 60.0)
+        count, reach = int(rng.integers(4, 14)), rng.uniform(0.0, 0.45) * width
+        x, at = np.linspace(0.0, length, count), pose(rng)
+        p, q = (
+            b3d.Spline(*[(float(a), float(b), 0.0) for a, b in zip(x, y, strict=True)])
+            for y in (rng.uniform(-reach, reach, count), width + rng.uniform(-reach, reach, count))
+        )
+        rails = [make_directrix(rail) for rail in (p, q)]
+        dense = [rail.point_at(np.linspace(*rail.interval, 2001))[:, :2] for rail in rails]
+        if shapely.Polygon(np.vstack((dense[0], dense[1][::-1]))).is_valid:
+            return at * p, at * q
 
 
 def area_between(p: Directrix, q: Directrix) -> float:
