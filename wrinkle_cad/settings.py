@@ -169,14 +169,8 @@ NOTCH_CLEARANCE: Final = 3.0
 TEXT_HEIGHT: Final = 4.0
 """mm; largest height of the texts in a pattern piece."""
 
-TEXT_HEIGHT_MIN: Final = 1.0
-"""mm; texts smaller than this cannot be read, so narrow pieces let their text run over the edge."""
-
 FLAT_FOLD: Final = 1e-7
 """rad; rulings folded by less are neither mountain nor valley."""
-
-NESTING_GAP: Final = 3.0
-"""mm between pieces that are nested on a sheet of material."""
 
 NESTING_SECONDS: Final = 10
 """s that each sheet is searched for a closer layout."""
@@ -186,9 +180,6 @@ PIECE_GAP: Final = 10.0
 
 PIECE_SIZE: Final = "M"
 """Size of a piece when the user says nothing; pattern CAD refuses a piece without one."""
-
-STYLE_NAME: Final = "PATTERN"
-"""What a file of pieces calls its style when nobody named it."""
 
 DxfVersion = Literal["R12", "R2000", "R2010"]
 Curves = Literal["lines", "arcs", "splines"]

@@ -39,6 +39,8 @@ from .cutter import rounded
 from .layers import LayerStyle, Profile, Role
 from .plain_text import ascii_name, ascii_text, text_changed
 
+STYLE_NAME: Final = "PATTERN"
+"""What a file of pieces calls its style when nobody named it."""
 TURN_POINTS: Final = "2"
 CURVE_POINTS: Final = "3"
 VALIDATION: Final = {"1": "84", "8": "85", "11": "86", "14": "87"}
@@ -78,7 +80,7 @@ def block_document(
         _write_lines(block, piece, lettered, profile)
         _write_marks(block, piece, profile)
         document.modelspace().add_blockref(name, (0.0, 0.0), dxfattribs={"layer": "1"})
-    findings += text_changed("style name", style, _stated(style) or settings.STYLE_NAME)
+    findings += text_changed("style name", style, _stated(style) or STYLE_NAME)
     _write_style(document, pieces, style, timestamp)
     _add_layers(document, profile)
     return document, tuple(findings)
@@ -268,7 +270,7 @@ def _write_style(
     document: DxfDocument, pieces: Sequence[PatternPiece], style: str, timestamp: datetime
 ) -> None:
     lines = (
-        f"Style Name: {_stated(style) or settings.STYLE_NAME}",
+        f"Style Name: {_stated(style) or STYLE_NAME}",
         f"Creation Date: {timestamp:%d-%m-%Y}",
         f"Creation Time: {timestamp:%H:%M}",
         "Author: wrinkle-cad",

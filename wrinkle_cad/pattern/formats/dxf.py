@@ -27,7 +27,7 @@ from wrinkle_cad.pattern.piece.piece import PatternPiece
 from wrinkle_cad.pattern.piece.stacking import laid_out
 from wrinkle_cad.settings import Curves, DxfVersion
 
-from .aama import block_document, block_text_box, scale_piece
+from .aama import STYLE_NAME, block_document, block_text_box, scale_piece
 from .cutter import cutter_document
 from .drawing import text_box
 from .layers import Profile, profile_from
@@ -57,7 +57,7 @@ def dxf_file(
     version: DxfVersion | None = None,
     curves: Curves = "lines",
     test_square: bool = False,
-    style: str = settings.STYLE_NAME,
+    style: str = STYLE_NAME,
     timestamp: datetime | None = None,
     is_laid: bool = False,
 ) -> DxfFile:

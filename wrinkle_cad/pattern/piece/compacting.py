@@ -11,9 +11,7 @@ from typing import Final
 import numpy as np
 import shapely
 
-from wrinkle_cad import settings
-
-from .nesting import NestedSheet
+from .nesting import NESTING_GAP, NestedSheet
 from .piece import PatternPiece, frozen
 
 _SEED: Final = 1
@@ -21,9 +19,7 @@ _SIMPLER: Final = 0.1
 """mm; outlines are simplified by this much, and widened as much, before they are compared."""
 
 
-def compacted(
-    sheet: NestedSheet, *, seconds: int, gap: float = settings.NESTING_GAP
-) -> NestedSheet:
+def compacted(sheet: NestedSheet, *, seconds: int, gap: float = NESTING_GAP) -> NestedSheet:
     """Returns the sheet with a shorter used length if one is found, else as it is.
 
     Args:

@@ -18,10 +18,12 @@ import numpy as np
 import numpy.typing as npt
 import shapely
 
-from wrinkle_cad import settings
 from wrinkle_cad.errors import InputError
 
 from .piece import PatternPiece, frozen
+
+NESTING_GAP: Final = 3.0
+"""mm between pieces that are nested on a sheet of material."""
 
 _CELLS: Final = 640
 """Cells along the longer side of a sheet, at most."""
@@ -63,7 +65,7 @@ def nested(
     pieces: Sequence[PatternPiece],
     *,
     sheet: tuple[float, float],
-    gap: float = settings.NESTING_GAP,
+    gap: float = NESTING_GAP,
 ) -> tuple[NestedSheet, ...]:
     """Returns sheets that hold all pieces, each once for every copy that is wanted of it.
 
