@@ -294,3 +294,20 @@ def test_a_strip_is_judged_in_a_moment() -> None:
     begin = time.process_time()
     rule_strip(p, q, (u, u))
     assert time.process_time() - begin < 1.0
+
+
+@pytest.mark.parametrize("height", [0.5, 3.0])
+def test_a_band_that_begins_and_ends_in_a_point_is_not_strained_there(height: float) -> None:
+    def rail(side: float) -> RailCurve:
+        return analytic(
+            lambda u: stack(
+                u,
+                side * np.sin(np.pi * u / 100) ** 2,
+                height * side * np.sin(np.pi * u / 20) * np.sin(np.pi * u / 100) ** 2,
+            ),
+            (0.0, 100.0),
+        )
+
+    strip = ruled((rail(-2.0), rail(2.0)))
+    strained = strip.strain.length[strip.strain.share > 1e-3]
+    assert strained.size == 0 or strained.sum() > 0.5

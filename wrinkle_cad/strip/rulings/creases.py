@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from .rail_curve import RailCurve
-from .sheet import Sheet, turns_between
+from .sheet import SHORTEST_IN_NODES, Sheet, turns_between
 
 Ints = npt.NDArray[np.int64]
 Floats = npt.NDArray[np.float64]
@@ -48,7 +48,8 @@ def creases_of(sheet: Sheet, p: RailCurve, q: RailCurve, spacing: float) -> tupl
         spacing: mm between the nodes that the rulings were found on.
     """
     jump = _jumps(sheet, np.arange(1, len(sheet.p_arc) - 1))
-    found = np.flatnonzero(jump > SMALLEST) + 1
+    long = sheet.reach[1:-1] > SHORTEST_IN_NODES * spacing
+    found = np.flatnonzero((jump > SMALLEST) & long) + 1
     corners = [rail.arc_at(rail.edges[1:-1]) for rail in (p, q)]
     creases = []
     for group in _groups(sheet, found, spacing):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Final
 
 import numpy as np
 import numpy.typing as npt
@@ -15,7 +16,9 @@ from .vectors import angles, crosses, dots, lengths, units
 Floats = npt.NDArray[np.float64]
 Bools = npt.NDArray[np.bool_]
 
-_ALONG: float = 1e-7
+SHORTEST_IN_NODES: Final = 4.0
+"""A ruling of at most so many nodes' spacing has no twist."""
+_ALONG: Final = 1e-7
 """A tangent within so many radians of its ruling spans no plane with it."""
 
 
@@ -48,13 +51,15 @@ class Sheet:
     """(k - 1,) float64, mm; likewise Q."""
 
 
-def sheet_of(p: RailCurve, q: RailCurve, rulings: Stations) -> Sheet:
+def sheet_of(p: RailCurve, q: RailCurve, rulings: Stations, spacing: float) -> Sheet:
     """Measures tangent planes on both sides of every interval.
 
     Args:
         p: the curve.
         q: the curve.
         rulings: in order.
+        spacing: mm between the nodes that they were found on; where rails meet, rulings no longer
+            than a few of these have any direction, and so no twist.
     """
     ruling = q.point_at(rulings.v) - p.point_at(rulings.u)
     reach, d = lengths(ruling), units(ruling)
@@ -73,6 +78,7 @@ def sheet_of(p: RailCurve, q: RailCurve, rulings: Stations) -> Sheet:
         q_normals.append(nb)
         turns.append(angles(dots(crosses(na, nb), d[end]), dots(na, nb)))
     p_arc, q_arc = p.arc_at(rulings.u), q.arc_at(rulings.v)
+    long = np.stack([reach[end] > SHORTEST_IN_NODES * spacing for end in ends], axis=1)
     return Sheet(
         rulings=rulings,
         p_arc=p_arc,
@@ -81,7 +87,7 @@ def sheet_of(p: RailCurve, q: RailCurve, rulings: Stations) -> Sheet:
         direction=d,
         p_normal=np.stack(p_normals, axis=1),
         q_normal=np.stack(q_normals, axis=1),
-        twist=np.where((rulings.way == RULED)[:, None], np.stack(turns, axis=1), 0.0),
+        twist=np.where(_column(rulings.way == RULED) & long, np.stack(turns, axis=1), 0.0),
         p_across=np.diff(p_arc) * (p_speeds[0] + p_speeds[1]) / 2,
         q_across=np.diff(q_arc) * (q_speeds[0] + q_speeds[1]) / 2,
     )

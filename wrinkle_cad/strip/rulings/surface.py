@@ -117,7 +117,7 @@ def make_surface(sheet: Sheet, p: RailCurve, q: RailCurve, spacing: float) -> Ru
 
 def _exact(p: RailCurve, q: RailCurve, pairing: Pairing) -> Sheet:
     rulings = with_exact_fans(pairing.p, pairing.q, stations_of(pairing), pairing.spacing)
-    return sheet_of(p, q, slid(p, q, rulings, pairing.spacing))
+    return sheet_of(p, q, slid(p, q, rulings, pairing.spacing), pairing.spacing)
 
 
 def inner_bend_radius(radius: float, thickness: float, k_factor: float) -> float:
