@@ -99,8 +99,8 @@ def outputs_together(job: Job, kinds: tuple[str, ...]) -> Iterator[dict[str, Pat
             raise ExportError(
                 job.output_dir / name,
                 "output",
-                "a file of somebody else got that name meanwhile - it is kept, nothing was written"
-                " - move it away or give another -o DIR",
+                "a file of somebody else got that name meanwhile; it is kept, and nothing was written."
+                " Move it away, or give another -o DIR.",
             ) from error
     finally:
         discard_staging(aside)
