@@ -99,7 +99,7 @@ def outputs_together(job: Job, kinds: tuple[str, ...]) -> Iterator[dict[str, Pat
             raise ExportError(
                 job.output_dir / name,
                 "output",
-                "a file of somebody else got that name meanwhile; it is kept, and nothing was written."
+                "a file of somebody else got that name meanwhile. It is kept, nothing was written."
                 " Move it away, or give another -o DIR.",
             ) from error
     finally:
