@@ -13,6 +13,7 @@ from shapely.geometry import Polygon
 from tests.strip.test_partners import leaning_strap, least_folds, upright_strap
 from wrinkle_cad import WrinkleStrip
 from wrinkle_cad.cad.rail.directrix import make_directrix, sample_directrix
+from wrinkle_cad.strip import triangulate
 
 FloatArray = NDArray[np.float64]
 
@@ -67,6 +68,41 @@ def test_a_line_against_a_wave_bends_little(height: float, most: float) -> None:
     strip = WrinkleStrip(Line((0, 0, 0), (200, 0, 0)), wave)
     assert strip.triangulation.bending <= most
     assert len(strip.p_samples.points) < 16
+
+
+def bending_of_wave(seed: int) -> tuple[float, float]:
+    """Of a wave of 2 to 8 turns, 10 to 80 away from a line.
+
+    First that of the strip, then that between the rails as each is sampled for itself, with as many
+    convex bridges as can be.
+    """
+    generator = np.random.default_rng(seed)
+    turns, width = generator.uniform(2, 8), generator.uniform(10, 80)
+    height, phase = generator.uniform(0.02, 0.5) * width, generator.uniform(0, 6)
+    x = np.linspace(0.0, 200.0, 20 * math.ceil(turns))
+    turned = 2 * math.pi * turns * x / 200 + phase
+    wave = spline(np.stack((x, 0 * x + width, height * np.sin(turned)), 1))
+    line = Line((0, 0, 0), (200, 0, 0))
+    alone = [sample_directrix(make_directrix(rail), 0.05).points for rail in (line, wave)]
+    greedy = triangulate(alone[0], alone[1], planarity=5e-5, price=None)
+    return WrinkleStrip(line, wave).triangulation.bending, greedy.bending
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_a_line_against_a_wave_never_bends_more_than_by_the_fewest_invalid_bridges(
+    seed: int,
+) -> None:
+    bending, greedy = bending_of_wave(seed)
+    assert bending <= (1 + 1e-9) * greedy
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("seed", range(20, 320))
+def test_many_lines_against_waves_never_bend_more_than_by_the_fewest_invalid_bridges(
+    seed: int,
+) -> None:
+    bending, greedy = bending_of_wave(seed)
+    assert bending <= (1 + 1e-9) * greedy
 
 
 def saddle() -> tuple[Edge, Edge]:

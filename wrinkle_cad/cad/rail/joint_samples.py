@@ -18,8 +18,26 @@ Floats = NDArray[np.float64]
 Search = Callable[[Floats, Floats], "Triangulation"]
 
 
-def sample_rails(
+def sampled_alone(
     p: Directrix, q: Directrix, tolerance: float, max_chord: float | None = None
+) -> tuple[Samples, Samples]:
+    """Returns the vertices of both rails of a strip, each for itself.
+
+    Args:
+        p: rail P.
+        q: rail Q.
+        tolerance: mm; how far a chord may lie from its curve.
+        max_chord: mm; longest chord, unlimited when None.
+
+    Raises:
+        InputError: a tolerance or ``max_chord`` that is not positive, or too fine.
+    """
+    p_samples, q_samples = (sample_directrix(rail, tolerance, max_chord) for rail in (p, q))
+    return p_samples, q_samples
+
+
+def sampled_jointly(
+    p: Directrix, q: Directrix, alone: tuple[Samples, Samples], tolerance: float
 ) -> tuple[Samples, Samples]:
     """Returns the vertices of both rails of a strip, each with regard to the other.
 
@@ -28,13 +46,9 @@ def sample_rails(
     Args:
         p: rail P.
         q: rail Q, which runs as P does.
+        alone: their vertices, each for itself.
         tolerance: mm; how far a chord may lie from its curve.
-        max_chord: mm; longest chord, unlimited when None.
-
-    Raises:
-        InputError: a tolerance or ``max_chord`` that is not positive, or too fine.
     """
-    alone = [sample_directrix(rail, tolerance, max_chord) for rail in (p, q)]
     return (
         samples_against(p, alone[0], alone[1].points, tolerance),
         samples_against(q, alone[1], alone[0].points, tolerance),
