@@ -199,6 +199,13 @@ def test_a_curve_is_sampled_within_the_tolerance() -> None:
     assert len(sample_directrix(rail, 0.01, max_chord=0.5).points) > 2 * len(samples.points)
 
 
+@pytest.mark.parametrize("source", [[A], np.array([A]), make_vertex(A)])
+def test_one_point_is_a_rail_without_length(source: object) -> None:
+    rail = make_directrix(source)
+    assert rail.is_point
+    assert rail.point_at(np.zeros(1)).tolist() == [list(A)]
+
+
 @pytest.mark.parametrize(
     ("source", "message"),
     [
@@ -206,13 +213,11 @@ def test_a_curve_is_sampled_within_the_tolerance() -> None:
         (3, "found int"),
         ("edge", "found str"),
         ([], "no curve in it"),
-        ([A], "array of shape"),
         (TopoDS_Edge(), "empty TopoDS_Edge"),
         (np.zeros((4, 2)), "array of shape"),
         (np.array([A, (1.0, math.nan, 0.0)]), "NaN or infinite"),
         (np.array([A, B, B, C]), "points 2 and 3 are 0 mm apart"),
         (line((0.0, 0.0, 0.0), (9e-7, 0.0, 0.0)), "length 9e-07 mm"),
-        (make_vertex(A), "found a vertex"),
         (box(), "found a solid"),
         (faces_of(box())[0], "found a face"),
         (make_compound(faces_of(box())), "found a compound"),
