@@ -221,6 +221,9 @@ Below it is what files lose by writing poles with seven or more digits.
 CLOSED_RAIL_CORNER: Final = 0.0175
 """rad; a closed rail that turns by more than this (one degree) at a point has a corner there."""
 
+DEVELOPABLE_SHARE: Final = 0.98
+"""The share of its rails that exact rulings cover on a strip that is a developable surface."""
+
 RAIL_LENGTH_MIN: Final = 1e-6
 """mm; a rail must be longer than this."""
 

@@ -128,8 +128,13 @@ class StripReport:
 
     @property
     def is_developable(self) -> bool:
-        """Whether a flat sheet takes the strip's shape without a crease and hardly giving."""
-        return self.state == "developable"
+        """Whether the strip is a developable surface, and not only near enough to one for a sheet.
+
+        Its state is ``developable``, and exact rulings cover nearly all of both rails. A narrow
+        helicoid may have that state, for a sheet hardly gives to take its shape, and is none.
+        """
+        is_ruled = self.developable_share >= settings.DEVELOPABLE_SHARE
+        return self.state == "developable" and is_ruled
 
     def as_json(self) -> dict[str, Any]:
         """The report as plain values, as it stands in NAME.json; no bend has no radius: None."""
