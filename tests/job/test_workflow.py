@@ -260,9 +260,7 @@ def test_a_materials_thickness_reaches_the_pattern(tmp_path: Path) -> None:
 
 
 def test_sheets_of_nested_pieces_are_outputs_like_the_others(tmp_path: Path) -> None:
-    job = Job(
-        input=EXAMPLE, output_dir=tmp_path, sheet=(300.0, 200.0), nest_seconds=0, quantity=2
-    )
+    job = Job(input=EXAMPLE, output_dir=tmp_path, sheet=(300.0, 200.0), nest_seconds=0, quantity=2)
     done = run(job)
     sheet = tmp_path / "vamp_strip.sheet1.dxf"
     assert sheet in done.outputs

@@ -15,6 +15,28 @@ def add_batch_arguments(parser: argparse.ArgumentParser) -> None:
     add("--name", metavar="MASK", help="names of the outputs: {stem} {suffix} {folder} {number}")
     add("--job", type=Path, metavar="FILE.toml", help="settings for files without their own")
     add("--workers", type=int, metavar="N", help="processes at a time (one per core)")
+    add_limit_arguments(parser)
+    add("--force", action="store_true", help="do again what is done already")
+    add("--dry-run", action="store_true", help="say what would be done, write nothing")
+    add(
+        "--scheduler",
+        metavar="ADDRESS",
+        help="run on an existing Dask cluster; it is trusted as this machine is: results are Python"
+        " objects, and whoever sends them can run code here",
+    )
+    add(
+        "--ship-bytes",
+        action="store_true",
+        help="with --scheduler: its workers share no folder with this machine",
+    )
+    output = parser.add_mutually_exclusive_group()
+    output.add_argument("--quiet", action="store_true", help="print failures only")
+    output.add_argument("--json-lines", action="store_true", help="print one JSON value per line")
+
+
+def add_limit_arguments(parser: argparse.ArgumentParser) -> None:
+    """Adds the limits of one file's job."""
+    add = parser.add_argument
     add(
         "--timeout",
         type=float,
@@ -28,14 +50,3 @@ def add_batch_arguments(parser: argparse.ArgumentParser) -> None:
         help=f"address space for one file in GiB ({settings.BATCH_MEMORY_GIB:g};"
         f" at least {settings.BATCH_LEAST_MEMORY_GIB:g})",
     )
-    add("--force", action="store_true", help="do again what is done already")
-    add("--dry-run", action="store_true", help="say what would be done, write nothing")
-    add("--scheduler", metavar="ADDRESS", help="run on an existing Dask cluster")
-    add(
-        "--ship-bytes",
-        action="store_true",
-        help="with --scheduler: its workers share no folder with this machine",
-    )
-    output = parser.add_mutually_exclusive_group()
-    output.add_argument("--quiet", action="store_true", help="print failures only")
-    output.add_argument("--json-lines", action="store_true", help="print one JSON value per line")

@@ -20,8 +20,9 @@ from wrinkle_cad import settings
 from wrinkle_cad.errors import WrinkleError
 from wrinkle_cad.files.names import error_words
 
-from .batch_arguments import add_batch_arguments
+from .batch_arguments import add_batch_arguments, add_limit_arguments
 from .job_arguments import add_job_arguments, job_keywords
+from .signals import ended_in_order
 
 if TYPE_CHECKING:
     from wrinkle_cad.job.outcome import JobDone
@@ -37,7 +38,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
     if not given.debug:
         sys.excepthook = _report_defect
     try:
-        code: int = given.command(given)
+        with ended_in_order():
+            code: int = given.command(given)
     except KeyboardInterrupt:
         print("Interrupted: nothing is half-written.", file=sys.stderr)
         return INTERRUPTED
@@ -88,6 +90,7 @@ def _add_run(commands: Any) -> None:
     run.add_argument("--name", metavar="STEM", help="stem of the outputs (default: the input's)")
     run.add_argument("input", type=Path, metavar="INPUT", help="STEP, IGES or BREP file")
     run.add_argument("--quiet", action="store_true", help="print failures only")
+    add_limit_arguments(run)
     _add_debug(run)
 
 
@@ -157,15 +160,16 @@ class _Version(argparse.Action):
 
 
 def _run(given: argparse.Namespace) -> int:
+    from wrinkle_cad.batch.alone import run_alone
     from wrinkle_cad.job.job import make_job
     from wrinkle_cad.job.outcome import JobFailed
-    from wrinkle_cad.job.workflow import run_job
 
     from .screen import progress_on_screen
 
     job = make_job(given.input, job_keywords(given, os.environ), given.job)
+    limits = {"timeout": given.timeout, "memory": given.memory}
     with progress_on_screen(is_wanted=not given.quiet) as progress:
-        outcome = run_job(job, progress=progress)
+        outcome = run_alone(job, progress=progress, **limits)
     if isinstance(outcome, JobFailed):
         if given.debug:
             print(outcome.trace, file=sys.stderr)
