@@ -270,3 +270,13 @@ def test_sheets_of_nested_pieces_are_outputs_like_the_others(tmp_path: Path) -> 
     run(job)
     sheet.write_text("somebody else's")
     assert "sheet1.dxf" in fail(job).message
+
+
+def test_a_bend_table_is_an_output_with_a_row_for_every_bend(tmp_path: Path) -> None:
+    done = run(Job(input=EXAMPLE, output_dir=tmp_path, equal_bends=6))
+    table = tmp_path / "vamp_strip.bends.csv"
+    assert table in done.outputs
+    rows = table.read_text().splitlines()
+    assert rows[0].startswith("piece,bend,direction,angle_deg,radius_mm")
+    assert len(rows) >= 1 + 6
+    assert "bends-reduced" in [finding.code for finding in done.findings]

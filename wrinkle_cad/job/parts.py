@@ -12,6 +12,7 @@ from wrinkle_cad import settings
 from wrinkle_cad.cad.kernel.loading import kernel_importable
 from wrinkle_cad.errors import Finding
 from wrinkle_cad.options.option import values_of
+from wrinkle_cad.pattern.formats.bend_table import write_bend_table
 from wrinkle_cad.pattern.piece.options import PieceOptions, PieceSettings
 from wrinkle_cad.report.limits import Limits, LimitSettings
 from wrinkle_cad.report.material import find_material
@@ -30,6 +31,8 @@ if TYPE_CHECKING:
 def output_kinds(job: Job) -> tuple[str, ...]:
     """The endings of the files that the job writes, in the order in which they are listed."""
     extra = tuple(kind for kind in ("svg", "pdf") if getattr(job, kind))
+    if job.bend_table or job.equal_bends is not None:
+        extra = (*extra, "bends.csv")
     return ("step", "stl", "dxf", "json", "html", *extra)
 
 
@@ -146,6 +149,8 @@ def write_pattern(
     )
     if "svg" in paths:
         changed.update(dict.fromkeys(pattern.export_svg(paths["svg"], profile=job.profile)))
+    if "bends.csv" in paths:
+        write_bend_table(paths["bends.csv"], pattern.pieces)
     if "pdf" in paths:
         changed.update(dict.fromkeys(pattern.export_pdf(paths["pdf"], profile=job.profile)))
     return [asdict(finding) for finding in changed]

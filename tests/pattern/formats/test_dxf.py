@@ -210,7 +210,7 @@ def test_arcs_and_splines_come_only_on_request():
 def test_options_that_do_not_go_together_are_refused():
     pieces = pieces_of(strips.rectangle())
     for wrong, message in (
-        ({"profile": "gerber"}, "profile 'gerber' - not known"),
+        ({"profile": "gerber"}, "profile 'gerber' is not known"),
         ({"version": "R13"}, "DXF version 'R13'"),
         ({"curves": "circles"}, "DXF curves 'circles'"),
         ({"profile": "aama", "curves": "arcs"}, "its contours are polylines"),

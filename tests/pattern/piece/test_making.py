@@ -57,7 +57,7 @@ def test_no_segment_is_shorter_than_the_tolerance():
 
 
 def test_a_strip_below_the_tolerance_is_refused():
-    with pytest.raises(InputError, match="use a finer tolerance"):
+    with pytest.raises(InputError, match="Use a finer tolerance"):
         one_piece(*strips.rectangle(10.0, 0.01), name="thread")
 
 
@@ -148,7 +148,7 @@ def test_the_texts_say_what_a_cutting_room_asks():
     piece = one_piece(*strips.rectangle(), name="vamp", settings=settings)
     assert piece.texts == (
         "vamp", "SIZE 38", "QUANTITY 2", "RIGHT SIDE UP", "MATERIAL Calf",
-        "UNITS MM, CHORD TOLERANCE 0.1 MM",
+        "UNITS MM", "CHORD TOLERANCE 0.1 MM",
     )  # fmt: skip
 
 
@@ -220,27 +220,3 @@ def test_a_hole_outside_the_piece_is_refused():
     assert len(one_piece(*made, name="peak", settings=inside).drill_holes) == 1
     with pytest.raises(InputError, match="outside the flat piece"):
         one_piece(*made, name="peak", settings=PieceSettings(drill_holes=((0.56, 0.9),)))
-
-
-def test_texts_stay_inside_the_piece_unless_it_is_too_narrow_for_the_smallest():
-    from wrinkle_cad.pattern.formats.drawing import draw
-
-    sizes = []
-    for made in (
-        strips.rectangle(),
-        strips.rectangle(120.0, 15.0),
-        strips.cylinder(),
-        strips.lens(),
-    ):
-        piece = one_piece(*made, name="vamp")
-        labels = draw(piece).labels
-        assert [label.text for label in labels] == list(piece.texts)
-        sizes.append(labels[0].height)
-        region = shapely.Polygon(piece.sew_line)
-        for label in labels:
-            low = label.position
-            high = low + label.height * np.array((0.9 * len(label.text), 1.0))
-            assert region.contains(shapely.box(*low, *high))
-    assert sizes[1] < sizes[0] <= 4.0
-    narrow = one_piece(*strips.rectangle(120.0, 3.0), name="lace")
-    assert {label.height for label in draw(narrow).labels} == {1.0}

@@ -108,6 +108,7 @@ def scale_piece(piece: PatternPiece) -> PatternPiece:
         drill_holes=frozen(np.zeros((0, 2))),
         hand=None,
         is_mirrored=False,
+        bends=None,
         findings=(),
     )
 

@@ -68,6 +68,9 @@ def draw(piece: PatternPiece, *, has_room_beside: bool = True) -> Drawing:
         lettered = lettering(piece, (piece.name,))
     for line, fold in zip(lettered.rulings, lettered.ruling_fold, strict=True):
         strokes.append(Stroke("mountain" if fold > 0.0 else "valley", line))
+    if piece.bends is not None:
+        for line, fold in zip(piece.bends.lines, piece.bends.fold, strict=True):
+            strokes.append(Stroke("bend_down" if fold > 0.0 else "bend_up", line))
     strokes += [Stroke("grain", line) for line in arrow_lines(lettered.grain_line)]
     if piece.stretch_line is not None:
         strokes += [Stroke("stretch", line) for line in arrow_lines(piece.stretch_line)]

@@ -18,11 +18,13 @@ from wrinkle_cad.errors import InputError
 from wrinkle_cad.files.toml import read_toml
 
 Role = Literal[
-    "cut", "sew", "notch", "mark", "grain", "stretch", "mountain", "valley", "punch", "text",
+    "cut", "sew", "notch", "mark", "grain", "stretch", "mountain", "valley",
+    "bend_up", "bend_down", "punch", "text",
     "test_square",
 ]  # fmt: skip
 ROLES: Final[tuple[Role, ...]] = (
-    "cut", "sew", "notch", "mark", "grain", "stretch", "mountain", "valley", "punch", "text",
+    "cut", "sew", "notch", "mark", "grain", "stretch", "mountain", "valley",
+    "bend_up", "bend_down", "punch", "text",
     "test_square",
 )  # fmt: skip
 
@@ -79,6 +81,8 @@ _CUTTER: Final[Mapping[Role, LayerStyle]] = MappingProxyType(
         "stretch": LayerStyle("STRETCH", 30, "DASHDOT"),
         "mountain": LayerStyle("RULING", 1, "DASHDOT"),
         "valley": LayerStyle("RULING", 5, "DASHED"),
+        "bend_up": LayerStyle("BEND_UP", 5, "DASHED"),
+        "bend_down": LayerStyle("BEND_DOWN", 1, "DASHDOT"),
         "punch": LayerStyle("PUNCH", 2),
         "text": LayerStyle("TEXT", 7),
         "test_square": LayerStyle("TEST", 9),
@@ -122,55 +126,59 @@ def profile_from(source: str | Path) -> Profile:
     path = Path(source)
     if path.suffix.lower() != ".toml":
         raise InputError(
-            f"profile {str(source)!r} - not known - one of {', '.join(PROFILES)} or a .toml file "
-            "- choose one"
+            f"The profile {str(source)!r} is not known. Choose one of {', '.join(PROFILES)} or a "
+            ".toml file."
         )
     try:
         content = read_toml(path)
     except InputError as error:
-        raise InputError(f"profile {error}") from error
+        raise InputError(f"The profile {error}") from error
     return _parsed(content, path)
 
 
 def _parsed(content: dict[str, object], path: Path) -> Profile:
     layers = content.get("layers")
     for key in sorted(set(content) - {"layers", "name"}):
-        raise _refused(path, f"key {key!r}", "name and [layers]")
+        raise _refused(path, f"the key {key!r}, and only name and [layers] are known")
     if not isinstance(layers, dict):
-        raise _refused(path, "no table [layers]", "one")
+        raise _refused(path, "no table [layers]")
     styles: dict[Role, LayerStyle] = dict(_CUTTER)
     for role, wanted in layers.items():
         if role not in ROLES:
-            raise _refused(path, f"role {role!r}", f"one of {', '.join(ROLES)}")
+            raise _refused(path, f"the role {role!r}, which is not one of {', '.join(ROLES)}")
         if wanted is False and role != "cut":
             del styles[role]
         else:
             styles[role] = _style(role, wanted, _CUTTER[role], path)
     for role, style in styles.items():
         if role != "cut" and style.layer == styles["cut"].layer:
-            raise _refused(path, f"{role} on the cut layer {style.layer}", "a layer of its own")
+            raise _refused(
+                path, f"{role} on the cut layer {style.layer}; give it a layer of its own"
+            )
     return Profile(str(content.get("name", path.stem)), MappingProxyType(styles))
 
 
 def _style(role: str, wanted: object, usual: LayerStyle, path: Path) -> LayerStyle:
     given = {"layer": wanted} if isinstance(wanted, str) else wanted
     if not isinstance(given, dict):
-        raise _refused(path, f"{role} = {wanted!r}", "a layer name, a table or false")
+        raise _refused(path, f"{role} = {wanted!r}, which is no layer name, table or false")
     # Users' files from before one spelling was settled on go on working.
     given = {"color" if key == "colour" else key: value for key, value in given.items()}
     for key in sorted(set(given) - {"layer", "color", "line_type"}):
-        raise _refused(path, f"{role}.{key}", "layer, color and line_type")
+        raise _refused(path, f"{role}.{key}, and only layer, color and line_type are known")
     layer = given.get("layer", usual.layer)
     color = given.get("color", usual.color)
     line_type = given.get("line_type", usual.line_type)
     if not isinstance(layer, str) or not _LAYER_NAME.fullmatch(layer):
-        raise _refused(path, f"{role}: layer {layer!r}", "1 to 31 of A-Z a-z 0-9 _ $ -")
+        raise _refused(path, f"the {role} layer {layer!r}; a name has 1 to 31 of A-Z a-z 0-9 _ $ -")
     if not isinstance(color, int) or isinstance(color, bool) or not 1 <= color <= 255:
-        raise _refused(path, f"{role}: color {color!r}", "a whole number 1 to 255")
+        raise _refused(path, f"the {role} color {color!r}; a color is a whole number 1 to 255")
     if not isinstance(line_type, str) or line_type.upper() not in LINE_TYPES:
-        raise _refused(path, f"{role}: line_type {line_type!r}", f"one of {', '.join(LINE_TYPES)}")
+        raise _refused(
+            path, f"the {role} line_type {line_type!r}, which is not one of {', '.join(LINE_TYPES)}"
+        )
     return LayerStyle(layer, color, line_type.upper())
 
 
-def _refused(path: Path, found: str, limit: str) -> InputError:
-    return InputError(f"profile {path.name} - {found} - {limit} - correct the file")
+def _refused(path: Path, found: str) -> InputError:
+    return InputError(f"The profile {path.name} has {found}. Correct the file.")

@@ -82,7 +82,7 @@ def text_changed(what: str, before: str, after: str) -> tuple[Finding, ...]:
         Finding(
             "text-changed",
             "info",
-            f"{what} {shown} - not what the file can hold - written as {after!a} - rename it "
-            "if that is not clear enough",
+            f"The {what} {shown} is not what the file can hold, and was written as {after!a}. "
+            "Rename it if that is not clear enough.",
         ),
     )

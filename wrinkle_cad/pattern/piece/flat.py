@@ -118,8 +118,8 @@ class FlatStrip:
         length = norm(laid) / norm(given)
         if length < 1e-3:
             raise InputError(
-                f"{name} direction {direction} - perpendicular to the strip at its middle - it "
-                "must lie along the surface there - give another direction"
+                f"The {name} direction {direction} is perpendicular to the strip at its middle "
+                "and must lie along the surface there. Give another direction."
             )
         unit: Floats = laid / norm(laid)
         return unit

@@ -137,6 +137,7 @@ def _content_of(piece: PatternPiece) -> bytes:
     lines = [piece.cut_line, piece.sew_line, *piece.cut_outs, piece.grain_line]
     lines += [] if piece.stretch_line is None else [piece.stretch_line]
     lines += [line for notch in piece.notches for line in notch_lines(notch)]
+    lines += [] if piece.bends is None else [piece.bends.lines.reshape(-1, 2)]
     lines += [piece.drill_holes, piece.rulings.reshape(-1, 2), piece.ruling_fold]
     return b"|".join((np.round(line, 6) + 0.0).tobytes() for line in lines)
 
@@ -210,6 +211,8 @@ def _free(piece: PatternPiece, grain: Floats, *, with_rulings: bool) -> shapely.
     taken += [shapely.LineString(line) for notch in piece.notches for line in notch_lines(notch)]
     taken += [shapely.LinearRing(hole) for hole in piece.cut_outs]
     taken += [shapely.Point(hole).buffer(_HOLE) for hole in piece.drill_holes]
+    if piece.bends is not None:
+        taken += list(shapely.linestrings(piece.bends.lines))
     if with_rulings:
         taken += list(shapely.linestrings(drawn_rulings(piece)[0]))
     inner = shapely.Polygon(piece.sew_line)

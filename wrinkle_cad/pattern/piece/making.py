@@ -13,6 +13,7 @@ from wrinkle_cad.errors import Finding, InputError
 from wrinkle_cad.strip.curve import polyline
 
 from .allowance import cut_outline
+from .bends import all_bends, equal_bends
 from .darts import closed_darts
 from .flat import FlatStrip, flat_strip
 from .neutral import neutral_layer
@@ -27,7 +28,7 @@ from .options import (
     PieceSettings,
 )  # fmt: skip
 from .outline import sew_outline
-from .piece import Floats, Outline, PatternPiece, frozen
+from .piece import Bends, Floats, Outline, PatternPiece, frozen
 from .placing import Refusal, placed_notches, seam_arcs, seam_corners
 from .splitting import non_overlapping_runs, overlaps
 
@@ -214,6 +215,7 @@ def _drafted(
             sew, strip.middle(), strip.flat_direction(chosen.stretch, name="stretch"), share=0.3
         )
     rulings, fold = _rulings(strip, chosen)
+    bends = _bends(strip, chosen)
     notches, refused = placed_notches(strip, arcs, (sew, cut), cut_outs, widths, chosen)
     piece = PatternPiece(
         name=name,
@@ -233,7 +235,9 @@ def _drafted(
         drill_holes=_drill_holes(strip, cut, chosen, name),
         p_span=(float(strip.p_arc[0]), float(strip.p_arc[-1])),
         q_span=(float(strip.q_arc[0]), float(strip.q_arc[-1])),
+        bends=bends,
         findings=(
+            *_bend_findings(name, bends, chosen),
             *_allowance_findings(name, cut_outs),
             *_dart_findings(name, sew, cut, widths, chosen.tolerance),
         ),
@@ -279,6 +283,12 @@ def _rulings(strip: FlatStrip, chosen: PieceSettings) -> tuple[Floats, Floats]:
     return frozen(lines[keep]), frozen(strip.fold[1:-1][keep])
 
 
+def _bends(strip: FlatStrip, chosen: PieceSettings) -> Bends | None:
+    if chosen.equal_bends is not None:
+        return equal_bends(all_bends(strip), chosen.equal_bends)
+    return all_bends(strip) if chosen.bend_table else None
+
+
 def _drill_holes(strip: FlatStrip, cut: Outline, chosen: PieceSettings, name: str) -> Floats:
     shares = np.array(chosen.drill_holes, dtype=np.float64).reshape(-1, 2)
     along, across = shares[:, 0], shares[:, 1]
@@ -316,6 +326,16 @@ def _split_finding(name: str, count: int) -> Finding:
         f"The pattern of {name} overlapped itself when flat and was split at bridges into {count} "
         "pieces. Sew the cuts together at their notches first.",
     )
+
+
+def _bend_findings(name: str, bends: Bends | None, chosen: PieceSettings) -> Iterator[Finding]:
+    if bends is not None and chosen.equal_bends is not None:
+        yield Finding(
+            "bends-reduced",
+            "info",
+            f"{name} is folded in {len(bends.fold)} bends, which leave its curve by at most "
+            f"{bends.deviation:.3g} mm.",
+        )
 
 
 def _allowance_findings(name: str, cut_outs: tuple[Floats, ...]) -> Iterator[Finding]:

@@ -46,8 +46,8 @@ def notch_arcs(
         outside = (arcs < 0.0) | (arcs > length)
         for i in np.flatnonzero(outside | (nearest < clearance)):
             raise InputError(
-                f"notch at {arcs[i]:g} mm - {nearest[i]:g} mm from a corner or end of a rail of "
-                f"{length:g} mm - at least {clearance:g} mm, on the rail - move it"
+                f"The notch at {arcs[i]:g} mm is {nearest[i]:g} mm from a corner or end of a rail "
+                f"of {length:g} mm. Move it to at least {clearance:g} mm from them, on the rail."
             )
         return arcs
     count = rule.count

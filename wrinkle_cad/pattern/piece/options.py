@@ -201,6 +201,23 @@ class PieceOptions:
             most=_LONGEST,
         ),
     )
+    bend_table: bool = field(
+        default=False,
+        metadata=option(
+            "for makers who fold: every bend in NAME.bends.csv and on the layers BEND_UP and"
+            " BEND_DOWN"
+        ),
+    )
+    equal_bends: int | None = field(
+        default=None,
+        metadata=option(
+            "bends of equal angle instead of one at every ruling",
+            least=1,
+            most=10_000,
+            when_none="every ruling",
+            metavar="K",
+        ),
+    )
     hand: Hand | None = field(
         default=None, metadata=option("the foot this strip is for; adds the mirrored twin")
     )

@@ -47,8 +47,8 @@ def sew_outline(p_line: Floats, q_line: Floats, *, tolerance: float) -> Outline:
     if len(points) < 3 or q_count < (0 if len(q_line) == 1 else 1):
         size = float(np.ptp(p_line, axis=0).max())
         raise InputError(
-            f"pattern outline - {size:g} mm long, its rails nowhere further apart than the "
-            f"tolerance - {tolerance:g} mm - use a finer tolerance"
+            f"The pattern is {size:g} mm long, and its rails are nowhere further apart than the "
+            f"tolerance of {tolerance:g} mm. Use a finer tolerance."
         )
     sides = np.array(
         [P_SIDE] * (len(p_kept) - 1) + end_sides + [Q_SIDE] * q_count + start_sides, dtype=np.int8

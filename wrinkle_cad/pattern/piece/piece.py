@@ -68,6 +68,26 @@ class Outline:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
+class Bends:
+    """Where a piece is folded, in the order from its start to its end.
+
+    Attributes:
+        lines: (b, 2, 2) mm from P to Q.
+        fold: (b,) rad, positive for a mountain as seen from the right side (down), negative for
+            a valley (up).
+        arcs: (b, 2) mm along P and Q in space, from their starts.
+        radius: (b,) mm; 0 where one bend stands for several rulings.
+        deviation: mm that the bends leave the curve by at most.
+    """
+
+    lines: Floats
+    fold: Floats
+    arcs: Floats
+    radius: Floats
+    deviation: float
+
+
+@dataclass(frozen=True, slots=True, eq=False)
 class PatternPiece:
     """One piece of a pattern; every array is read-only and in mm.
 
@@ -81,6 +101,7 @@ class PatternPiece:
         rulings: (r, 2, 2) from P to Q. ``ruling_fold``: (r,) rad, positive for a mountain as
             seen from the right side, negative for a valley.
         drill_holes: (h, 2) centres.
+        bends: for makers who fold, None where they are not asked for.
         p_span, q_span: (first, last) mm along the rails in space that this piece covers.
         hand: the foot it is for.
         is_mirrored: Q lies below P, as the strip was mirrored or its other side is the right one.
@@ -106,6 +127,7 @@ class PatternPiece:
     q_span: tuple[float, float]
     hand: Hand | None = None
     is_mirrored: bool = False
+    bends: Bends | None = None
     findings: tuple[Finding, ...] = ()
 
     @property
@@ -151,7 +173,13 @@ class PatternPiece:
 
         y is turned over, outlines stay counter-clockwise, mountains become valleys.
         """
-        return replace(_mirrored(self), ruling_fold=frozen(-self.ruling_fold))
+        turned = _mirrored(self)
+        bends = turned.bends
+        return replace(
+            turned,
+            ruling_fold=frozen(-self.ruling_fold),
+            bends=None if bends is None else replace(bends, fold=frozen(-bends.fold)),
+        )
 
     def mirrored(self, *, name: str, hand: Hand) -> PatternPiece:
         """Returns the piece for the other foot: y turned over, outlines kept counter-clockwise.
@@ -229,4 +257,7 @@ def _mapped(
         stretch_line=None if piece.stretch_line is None else placed(piece.stretch_line),
         rulings=placed(piece.rulings),
         drill_holes=placed(piece.drill_holes),
+        bends=None
+        if piece.bends is None
+        else replace(piece.bends, lines=placed(piece.bends.lines)),
     )

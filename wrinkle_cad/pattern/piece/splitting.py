@@ -38,8 +38,8 @@ def non_overlapping_runs(strip: FlatStrip, *, tolerance: float) -> tuple[tuple[i
             stop -= 1
         if stop == first:
             raise InputError(
-                f"pattern - overlaps itself right after bridge {first} - cuts need a bridge of at "
-                f"least {tolerance:g} mm - sample the strip more finely"
+                f"The pattern overlaps itself right after bridge {first}, and cuts need a bridge "
+                f"of at least {tolerance:g} mm. Sample the strip more finely."
             )
         runs.append((first, stop))
         first = stop
