@@ -211,10 +211,10 @@ def test_options_that_do_not_go_together_are_refused():
     pieces = pieces_of(strips.rectangle())
     for wrong, message in (
         ({"profile": "gerber"}, "profile 'gerber' is not known"),
-        ({"version": "R13"}, "DXF version 'R13'"),
-        ({"curves": "circles"}, "DXF curves 'circles'"),
-        ({"profile": "aama", "curves": "arcs"}, "its contours are polylines"),
-        ({"version": "R12", "curves": "splines"}, "version R12 has none"),
+        ({"version": "R13"}, "DXF version is 'R13'"),
+        ({"curves": "circles"}, "curves are 'circles'"),
+        ({"profile": "aama", "curves": "arcs"}, "contours of the profile aama are polylines"),
+        ({"version": "R12", "curves": "splines"}, "R12 has no splines"),
     ):
         with pytest.raises(InputError, match=message):
             dxf_bytes(pieces, **wrong)
