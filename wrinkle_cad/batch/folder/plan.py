@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
@@ -153,7 +154,8 @@ def _unreadable_name(source: Source) -> str:
 def _own_settings(source: Source, stem: str) -> dict[str, Any]:
     own: dict[str, Any] = {}
     for path in (source.path.parent / FOLDER_TOML, source.path.parent / (stem + FILE_TOML)):
-        if not path.is_file():
+        # What is there and no regular file is told; a name too long for one is not there.
+        if not os.path.lexists(path):
             continue
         table = read_job_toml(path)
         meant = table.get("input")
