@@ -127,3 +127,24 @@ def bumps(seed: int) -> Rails:
 def percent_of_twist(twist: float) -> float:
     """Strain in per cent where both rails run equally fast across rulings of this twist in rad."""
     return 100.0 * (1.0 - math.cos(twist / 2.0))
+
+
+def twisted(seed: int) -> Rails:
+    """Two rails that wind about a middle line while they wave: most stretch a sheet."""
+    random = np.random.default_rng([12, seed])
+    half, length = random.uniform(5.0, 20.0), random.uniform(80.0, 200.0)
+    turn, swing = random.uniform(-2.0, 2.0), random.uniform(0.0, 0.4)
+    waves, high = random.uniform(0.5, 2.0), random.uniform(0.0, 3.0)
+    phase = random.uniform(0.0, 2.0 * np.pi, 2)
+
+    def rail(side: float) -> RailCurve:
+        def point_at(share: Floats) -> Floats:
+            angle = turn * share + swing * np.sin(2.0 * np.pi * waves * share + phase[0])
+            rise = high * np.sin(2.0 * np.pi * waves * share + phase[1])
+            return stack(
+                length * share, side * half * np.cos(angle), rise + side * half * np.sin(angle)
+            )
+
+        return analytic(point_at, (0.0, 1.0))
+
+    return rail(1.0), rail(-1.0)

@@ -2,6 +2,7 @@ from __future__ import annotations
 
 import math
 import time
+from collections.abc import Callable
 
 import numpy as np
 import pytest
@@ -19,6 +20,7 @@ from tests.strip.rulings.rails import (
     ruled,
     spiral,
     stack,
+    twisted,
 )
 from wrinkle_cad.strip.rulings.rail_curve import RailCurve
 from wrinkle_cad.strip.rulings.surface import RuledStrip, inner_bend_radius, rule_strip
@@ -229,16 +231,22 @@ def check_one_verdict(strips: list[RuledStrip]) -> float:
     return 100.0 * float(np.ptp(share))
 
 
-@pytest.mark.parametrize("seed", range(12))
-def test_the_verdict_does_not_depend_on_the_sampling(seed: int) -> None:
-    rails = bumps(seed)
+@pytest.mark.parametrize("seed", range(10))
+@pytest.mark.parametrize("family", [bumps, twisted])
+def test_the_verdict_does_not_depend_on_the_sampling(
+    family: Callable[[int], Rails], seed: int
+) -> None:
+    rails = family(seed)
     assert check_one_verdict([ruled(rails, tolerance) for tolerance in (0.1, 0.01)]) <= 2.5
 
 
 @pytest.mark.slow
-def test_sixty_strips_have_one_verdict_at_four_tolerances() -> None:
+@pytest.mark.parametrize("family", [bumps, twisted])
+def test_sixty_strips_have_one_verdict_at_four_tolerances(family: Callable[[int], Rails]) -> None:
     spreads = [
-        check_one_verdict([ruled(bumps(seed), tolerance) for tolerance in (0.1, 0.05, 0.01, 0.002)])
+        check_one_verdict(
+            [ruled(family(seed), tolerance) for tolerance in (0.1, 0.05, 0.01, 0.002)]
+        )
         for seed in range(60)
     ]
     assert np.median(spreads) <= 1.0

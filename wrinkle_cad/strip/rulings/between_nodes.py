@@ -81,6 +81,8 @@ def place_without_twist(
         The nearest such place within the reach; `start` where there is none.
     """
     middle = _twist(u, point, velocity, start, other)
+    if abs(middle) <= _NO_TWIST:
+        return start
     reach = step
     while reach <= _WIDEST * step:
         low, high = max(u[0], start - reach), min(u[-1], start + reach)

@@ -90,8 +90,10 @@ def _without_short(
         between = 0 < k < len(stretches) - 1 and stretch.way == RULED
         if between and {stretches[k - 1].way, stretches[k + 1].way} == {FAN_P, FAN_Q}:
             a, b = stretch.first, stretch.last
-            cut = slice(a - 1, b + 1)
-            same = np.ptp(stations.p_piece[cut]) == 0 and np.ptp(stations.q_piece[cut]) == 0
+            # A fan's own rail may have a corner at its apex; the one that it runs along may not.
+            on_p, on_q = (b, a - 1) if stretches[k - 1].way == FAN_P else (a - 1, b)
+            same = stations.p_piece[on_p] == stations.p_piece[a]
+            same &= stations.q_piece[on_q] == stations.q_piece[a]
             moved = p_arc[b] - p_arc[a] + q_arc[b] - q_arc[a]
             if same and moved <= SHORT_IN_NODES * spacing:
                 continue
@@ -128,17 +130,18 @@ def _solve_row(
 ) -> None:
     """Moves the rulings between the fans of a row; fan k lies between places k and k + 1."""
     first, last = row
-    fixed = [k for k in range(first, last) if _is_fixed(p, q, stretches[k], places[k])]
-    free = fixed[0] if fixed else first
-    _carry(stretches[free], places, free)
-    for k in range(free, last):  # the fan before place k + 1 is known
-        if k > free and k in fixed:
-            break
-        if k + 1 < len(stretches):
+    fixed = {k for k in range(first, last) if _is_fixed(p, q, stretches[k], places[k])}
+    known = fixed or {first}
+    for k in sorted(known):
+        _take_apex(stretches[k], places[k], places[k + 1])
+    earliest = min(known)
+    for k in range(earliest, last):
+        # Where the next fan's apex stays as well there is nothing to move.
+        if k + 1 < len(stretches) and k + 1 not in fixed:
             _solve(p, q, places[k + 1], along=stretches[k].way)
             if k + 1 < last:
                 _take_apex(stretches[k + 1], places[k + 1], places[k + 2])
-    for k in range(free, first - 1, -1):  # the fan after place k is known
+    for k in range(earliest, first - 1, -1):
         if k > 0:
             _solve(p, q, places[k], along=stretches[k].way)
             if k > first:
@@ -148,10 +151,6 @@ def _solve_row(
 def _is_fixed(p: Nodes, q: Nodes, fan: _Stretch, place: _Place) -> bool:
     rail, at = (p, place.u) if fan.way == FAN_P else (q, place.v)
     return any(at in (piece[0][0], piece[0][-1]) for piece in rail.pieces)
-
-
-def _carry(fan: _Stretch, places: list[_Place], k: int) -> None:
-    _take_apex(fan, places[k], places[k + 1])
 
 
 def _take_apex(fan: _Stretch, known: _Place, other: _Place) -> None:
@@ -190,6 +189,8 @@ def _laid_out(stations: Stations, stretches: list[_Stretch], places: list[_Place
             u[:], v = start.u, _spread(v, start.v, end.v)
         elif stretch.way == FAN_Q:
             u, v[:] = _spread(u, start.u, end.u), start.v
+        else:
+            u, v = np.clip(u, start.u, end.u), np.clip(v, start.v, end.v)
         u[-1], v[-1] = end.u, end.v
         us.append(u[1:])
         vs.append(v[1:])

@@ -11,9 +11,11 @@ three ways:
 
 A change between ways is a crease of the twist at that ruling, since a ruled surface has both
 tangents in its planes and a cone only that of the rail it runs along; so is a corner of a rail. A
-crease of the angle `c` costs `c^2` times its length, as much as a twist by `c` over a stretch as
-long as the ruling: zigzags of creases then never pay on a smooth strip (at best 2.6 times the cost
-of twisting it), and at the rails' ends and corners, where the tangent is free, fans cost nothing.
+crease of the angle `c` costs `CREASE c^2` times its length: so much more than a twist by `c` over a
+stretch as long as the ruling. Zigzags of creases never pay on a smooth strip (even at a weight of 1
+they cost at least 2.6 times as much as twisting it), and a crease that spares a long twist stays
+too slight to be called one. At the rails' ends and corners, where the tangent is free, fans cost
+nothing.
 """
 
 from __future__ import annotations
@@ -37,7 +39,7 @@ FAN_Q: Final = 2
 P_FORWARD: Final = 1
 Q_FORWARD: Final = 2
 
-CREASE: Final = 10.0
+CREASE: Final = 20.0
 """Weight of a crease's squared angle times its length, against that of twist over as long a way."""
 _SHORTNESS: Final = 1e-12
 """Weight of a ruling's squared length, per mm^2: decides in planes only."""
