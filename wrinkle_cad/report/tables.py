@@ -215,7 +215,10 @@ def _gaps_card(numbers: Numbers) -> Element | None:
     ]
     if not rows:
         return None
-    note = "Runs of bridges that are not locally convex. Click a row to see its middle."
+    note = (
+        "Runs of bridges at which the triangles are not those of a developable surface: figures of"
+        " the search, which change with the tolerance. Click a row to see its middle."
+    )
     advice = {
         gap["kind"]: gap["advice"] for entry in numbers.get("/strips") for gap in entry["gaps"]
     }
@@ -224,7 +227,7 @@ def _gaps_card(numbers: Numbers) -> Element | None:
         for kind, words in advice.items()
     )
     return _card(
-        "Where it is not developable",
+        "Bridges that are not locally convex",
         table(columns, rows),
         node("p", note, class_="note"),
         node("h3", "What to change", class_="below"),
