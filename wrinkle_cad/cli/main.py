@@ -7,6 +7,7 @@ Exit codes: 0 done, 1 a job failed or, with --strict, a limit was missed, 2 wron
 from __future__ import annotations
 
 import argparse
+import errno
 import json
 import os
 import sys
@@ -18,11 +19,12 @@ from typing import TYPE_CHECKING, Any, Final, get_args
 
 from wrinkle_cad import settings
 from wrinkle_cad.errors import WrinkleError
-from wrinkle_cad.files.names import error_words
+from wrinkle_cad.files.names import error_words, printable
 
 from .batch_arguments import add_batch_arguments, add_limit_arguments
 from .job_arguments import add_job_arguments, job_keywords
 from .signals import ended_in_order
+from .streams import complain, flushed, give_up_stdout, open_streams
 
 if TYPE_CHECKING:
     from wrinkle_cad.job.outcome import JobDone
@@ -34,23 +36,35 @@ INTERRUPTED: Final = 130
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Runs the command line and returns its exit code."""
+    open_streams()
     given = _parser().parse_args(arguments)
     if not given.debug:
         sys.excepthook = _report_defect
     try:
         with ended_in_order():
             code: int = given.command(given)
+        flushed()
     except KeyboardInterrupt:
-        print("Interrupted: nothing is half-written.", file=sys.stderr)
+        complain("Interrupted: nothing is half-written.")
         return INTERRUPTED
     except BrokenPipeError:
         # The reader of our output went away (`| head`); Python would complain once more at exit.
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        give_up_stdout()
+        return FAILED
+    except OSError as error:
+        if error.errno not in (errno.ENOSPC, errno.EIO, errno.EBADF) or error.filename is not None:
+            raise
+        # No file has a part in it: a stream is full or gone.
+        give_up_stdout()
+        complain(
+            f"wrinkle-cad: What was to be printed cannot be written ({error.strerror})."
+            " The files are written all the same: look into the output folder."
+        )
         return FAILED
     except WrinkleError as error:
         if given.debug:
             traceback.print_exc()
-        print(f"wrinkle-cad: {error}", file=sys.stderr)
+        complain(f"wrinkle-cad: {printable(str(error))}")
         return FAILED
     return code
 
@@ -173,7 +187,7 @@ def _run(given: argparse.Namespace) -> int:
     if isinstance(outcome, JobFailed):
         if given.debug:
             print(outcome.trace, file=sys.stderr)
-        print(f"wrinkle-cad: {outcome.message}", file=sys.stderr)
+        complain(f"wrinkle-cad: {printable(outcome.message)}")
         return FAILED
     if not given.quiet:
         _print_done(outcome)
@@ -201,7 +215,7 @@ def _print_done(outcome: JobDone) -> None:
     if verdict["passed"]:
         print(one_line(verdict["headline"]))
     for path in outcome.outputs:
-        print(path)
+        print(printable(str(path)))
 
 
 def _batch(given: argparse.Namespace) -> int:
@@ -233,7 +247,7 @@ def _compare(given: argparse.Namespace) -> int:
     summary, outputs = compare_job(job)
     print_comparison(summary)
     for path in outputs:
-        print(path)
+        print(printable(str(path)))
     return DONE
 
 
