@@ -112,3 +112,9 @@ def test_the_deviation_of_equal_bends_is_told_and_without_them_nothing_is():
 def test_a_table_that_cannot_be_written_is_an_export_error(tmp_path):
     with pytest.raises(ExportError, match="CSV"):
         write_bend_table(tmp_path / "none" / "a.csv", [])
+
+
+def test_what_was_noticed_is_told_once_for_both_feet():
+    settings = PieceSettings(equal_bends=4, hand="left")
+    pieces = make_pieces(*strips.cylinder(), name="tube", settings=settings)
+    assert [len(piece.findings) for piece in pieces] == [1, 0]

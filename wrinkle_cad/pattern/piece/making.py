@@ -315,7 +315,8 @@ def _both_hands(piece: PatternPiece, chosen: PieceSettings) -> tuple[PatternPiec
     label = piece.name
     return (
         replace(piece, name=f"{label} {chosen.hand.upper()}".strip(), hand=chosen.hand),
-        piece.mirrored(name=f"{label} {other.upper()}".strip(), hand=other),
+        # What was noticed is told once for both.
+        replace(piece.mirrored(name=f"{label} {other.upper()}".strip(), hand=other), findings=()),
     )
 
 
