@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 import pytest
-from build123d import Edge, Line, Polyline, Pos, Spline
+from build123d import Edge, Line, Polyline, Pos, Rectangle, Spline
 
 from wrinkle_cad.wrinkle.wrinkle_strip import WrinkleStrip
 
@@ -98,3 +98,17 @@ def test_the_json_holds_every_figure_as_a_plain_value() -> None:
     assert all(isinstance(entry[name], float) for name in figures)
     assert entry["closed"] is False
     assert entry["state"] == "creased"
+
+
+def test_a_box_open_at_both_ends_is_creased_at_its_four_edges() -> None:
+    frame = Rectangle(40, 20)
+    report = WrinkleStrip(frame.wire(), (Pos(0, 0, 10) * frame).wire()).report
+    assert report.closed
+    assert [crease.angle_deg for crease in report.creases] == pytest.approx([90.0] * 4, abs=0.1)
+
+
+def test_a_closed_frustum_is_judged_without_a_seam() -> None:
+    rails = (Edge.make_circle(50), Pos(0, 0, 80) * Edge.make_circle(30))
+    report = WrinkleStrip(*rails).report
+    assert (report.state, report.developable_share) == ("developable", 1.0)
+    assert report.smallest_bend_radius_mm == pytest.approx(30 * math.hypot(80, 20) / 80, rel=0.01)

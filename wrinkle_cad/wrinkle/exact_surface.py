@@ -39,7 +39,9 @@ def exact_surface(
             (p_samples, q_samples), triangulation.bridges.T, counts, rails, strict=True
         )
     )
-    rule = rule_closed_strip if triangulation.is_closed else rule_strip
+    # A closed strip's triangulation is cut open; its rails start where it is cut.
+    is_closed = p.is_closed and q.is_closed
+    rule = rule_closed_strip if is_closed else rule_strip
     return rule(*rails, (at_p, at_q))
 
 

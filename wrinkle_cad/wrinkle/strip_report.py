@@ -161,6 +161,7 @@ def report_on(
     gaps: Sequence[Gap],
     grain_radii_mm: tuple[float, float],
     is_folded: bool = False,
+    is_closed: bool = False,
     thickness_mm: float = 0.0,
     k_factor: float = settings.K_FACTOR,
 ) -> StripReport:
@@ -179,6 +180,7 @@ def report_on(
         gaps: the runs of invalid bridges.
         grain_radii_mm: smallest bend radii of the surface along and across the grain.
         is_folded: whether it folds back on itself or passes through itself.
+        is_closed: whether its rails are.
         thickness_mm: of the material.
         k_factor: where its neutral layer lies, in shares of the thickness from the inner face.
     """
@@ -193,7 +195,7 @@ def report_on(
     return StripReport(
         name=name,
         role=role,
-        closed=triangulation.is_closed,
+        closed=is_closed,
         state=_state(ruled, is_folded=is_folded),
         developable_share=ruled.developable_share,
         max_strain_percent=100.0 * ruled.strain.largest,

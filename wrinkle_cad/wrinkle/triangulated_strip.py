@@ -241,6 +241,7 @@ class TriangulatedStrip:
             lengths_mm=self._rail_lengths(),
             least_bending=self.least_bending.bending,
             gaps=find_gaps(self.triangulation),
+            is_closed=self.p.is_closed and self.q.is_closed,
             is_folded=any(finding.code in FOLDED for finding in self._noticed),
             grain_radii_mm=radii_by_grain(
                 self.triangulation, self.unrolling, self.ruled, self.grain
