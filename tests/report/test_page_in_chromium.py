@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import base64
 import io
-import json
 import time
 from collections.abc import Callable
 from pathlib import Path
@@ -21,6 +20,7 @@ from selenium.webdriver.remote.webelement import WebElement
 
 from tests.report.strips import cylinder_rails, dome, planar_rails, summary_of, view_of, wavy_rails
 from wrinkle_cad.report.limits import Limits
+from wrinkle_cad.report.material import Material
 from wrinkle_cad.report.page import write_page
 from wrinkle_cad.report.views import StripView
 
@@ -206,17 +206,18 @@ def test_the_3d_view_turns_zooms_and_returns(page: webdriver.Chrome) -> None:
 
 
 @pytest.mark.parametrize("color_by", ["fold", "twist"])
-def test_bridges_are_colored_by_what_is_chosen(page: webdriver.Chrome, color_by: str) -> None:
+def test_bridges_are_colored_by_what_is_chosen(
+    page: webdriver.Chrome, strip: StripView, color_by: str
+) -> None:
     before = picture(page, "space")
     page.execute_script(
         "document.querySelector(arguments[0]).click()", f"[name=color-by][value={color_by}]"
     )
     until(lambda: (picture(page, "space") != before).any(axis=2).mean() > 0.005, "other colors")
     high = page.find_element(By.CSS_SELECTOR, ".legend .high").text
-    entry = json.loads(
-        page.execute_script("return document.getElementById('summary').textContent")
-    )["strips"][0]
-    assert float(high.rstrip("°")) == pytest.approx(entry[f"max_{color_by}_deg"], abs=0.06)
+    drawn = strip.triangulation
+    angles = drawn.fold if color_by == "fold" else drawn.twist
+    assert float(high.rstrip("°")) == pytest.approx(np.degrees(np.abs(angles).max()), abs=0.06)
 
 
 @pytest.mark.parametrize(
@@ -291,7 +292,9 @@ def test_the_matrix_zooms_to_single_bridges(browser: webdriver.Chrome, tmp_path:
 def test_a_hostile_label_stays_text(browser: webdriver.Chrome, tmp_path: Path) -> None:
     rails = cylinder_rails(20, 20)
     views = [view_of(rails, HOSTILE), view_of(planar_rails(), "second")]
-    summary = summary_of(views, Limits(max_fold_deg=0.1, material=HOSTILE), input={"file": HOSTILE})
+    summary = summary_of(
+        views, Limits(max_fold_deg=0.1).of(Material(name=HOSTILE)), input={"file": HOSTILE}
+    )
     open_page(browser, tmp_path / "hostile.html", write_page(summary, views, dome(6)))
     point_at(browser, canvas(browser, "curves"), 0.5, 0.5)
     until(lambda: agreed_highlight(browser), "the same bridge in every view")
