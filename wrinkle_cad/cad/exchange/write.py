@@ -25,7 +25,7 @@ from OCP.XCAFDoc import XCAFDoc_DocumentTool
 
 from wrinkle_cad import settings
 from wrinkle_cad.cad.exchange.step.bytes import Header, face_placeholder, finished_text, placeholder
-from wrinkle_cad.cad.kernel.mesh import binary_stl, mesh_of
+from wrinkle_cad.cad.kernel.mesh import binary_stl, mesh_of, shares_edges_thrice, without_doubled
 from wrinkle_cad.cad.kernel.shape_index import ShapeIndex
 from wrinkle_cad.cad.kernel.steps import kernel_step
 from wrinkle_cad.cad.kernel.topology import faces_of
@@ -185,6 +185,11 @@ def _apart(shapes: Sequence[TopoDS_Shape]) -> list[TopoDS_Shape]:
     return own
 
 
+_OTHER_MESHES: Final = (0.7, 0.5, 0.35)
+"""Shares of the tolerance that are tried in turn where a mesh overlaps itself: on faces thinner
+than the tolerance the kernel's mesher sometimes lays triangles upon each other."""
+
+
 def write_stl(
     path: Path,
     shape: TopoDS_Shape,
@@ -227,7 +232,13 @@ def stl_bytes(
     if not faces_of(shape):
         raise CadError("mesh the shape", "it has no faces. Pass a face, shell or solid.")
     silence_kernel()
-    points, triangles = mesh_of(shape, tolerance=tolerance, angular_tolerance=angular_tolerance)
+    for share in (1.0, *_OTHER_MESHES):
+        points, triangles = mesh_of(
+            shape, tolerance=share * tolerance, angular_tolerance=angular_tolerance
+        )
+        triangles = without_doubled(points, triangles)
+        if not shares_edges_thrice(points, triangles):
+            break
     if not len(triangles):
         raise CadError("mesh the shape", "the CAD kernel made no triangles. Check the shape.")
     return binary_stl(points, triangles)

@@ -99,3 +99,48 @@ def binary_stl(points: Floats, triangles: Indices) -> bytes:
     records["normal"] = np.divide(normals, lengths, out=np.zeros_like(normals), where=lengths > 0.0)
     count = np.array(len(records), dtype="<u4").tobytes()
     return b"".join((_STL_HEADER.ljust(80), count, records.tobytes()))
+
+
+def without_doubled(points: NDArray[np.float64], triangles: NDArray[np.int64]) -> NDArray[np.int64]:
+    """Returns the triangles but for pairs on the same three points: they enclose nothing.
+
+    The kernel makes such pairs where a face is thinner than the tolerance or than the single
+    precision of an STL file.
+
+    Args:
+        points: (k, 3) float64, mm.
+        triangles: (l, 3) int64 into the points.
+    """
+    if not len(triangles):
+        return triangles
+    corners = _corners(points, triangles)
+    _, kind, count = np.unique(
+        np.sort(corners, axis=1), axis=0, return_inverse=True, return_counts=True
+    )
+    kept: NDArray[np.int64] = triangles[(count[kind.reshape(-1)] != 2) | ~_is_proper(corners)]
+    return kept
+
+
+def shares_edges_thrice(points: NDArray[np.float64], triangles: NDArray[np.int64]) -> bool:
+    """Tells whether more than two triangles meet in an edge, as an STL file's precision has it.
+
+    Args:
+        points: (k, 3) float64, mm.
+        triangles: (l, 3) int64 into the points.
+    """
+    corners = _corners(points, triangles)
+    corners = corners[_is_proper(corners)]
+    edges = np.sort(corners[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2), axis=1)
+    _, count = np.unique(edges, axis=0, return_counts=True)
+    return bool(count.max(initial=0) > 2)
+
+
+def _corners(points: NDArray[np.float64], triangles: NDArray[np.int64]) -> NDArray[np.int64]:
+    """(l, 3): the corners of triangles, numbered alike where single precision has them alike."""
+    _, same = np.unique(points.astype(np.float32), axis=0, return_inverse=True)
+    numbered: NDArray[np.int64] = same.reshape(-1)[triangles]
+    return numbered
+
+
+def _is_proper(corners: NDArray[np.int64]) -> NDArray[np.bool_]:
+    return np.asarray((corners != np.roll(corners, 1, axis=1)).all(axis=1), dtype=np.bool_)
