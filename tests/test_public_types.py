@@ -87,9 +87,12 @@ def write(path: Path, lines: str) -> None:
 
 
 def faults(checker: str, paths: list[Path]) -> dict[tuple[str, int], str]:
-    """Errors by file and by the number of the line after the head, from 0."""
+    """Errors by file and by the number of the line after the head, from 0.
+
+    Both look for packages where this Python has its own, whatever the path's first Python is.
+    """
     command = {
-        "pyright": ["pyright", "--outputjson"],
+        "pyright": ["pyright", "--outputjson", "--pythonpath", sys.executable],
         "mypy": ["mypy", "--strict", "--output=json"],
     }[checker]
     done = subprocess.run(
