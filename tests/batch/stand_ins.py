@@ -88,7 +88,7 @@ def _write(job: Job, kind: str) -> Path:
 def _act(action: str, job: Job, phase: str) -> JobFailed | None:
     if action == "fail":
         return JobFailed(
-            job=job, phase=phase, error="InputError", message="no curves - 0 - 2 - draw"
+            job=job, phase=phase, error="InputError", message="There are no curves. Draw two."
         )
     if action == "hang":
         time.sleep(3600)

@@ -82,12 +82,12 @@ def test_limits_that_an_executor_cannot_keep_are_refused(tmp_path: Path, limit: 
 
 def test_two_jobs_with_the_same_outputs_are_refused(tmp_path: Path) -> None:
     (job,) = make_jobs(tmp_path, "good")
-    with pytest.raises(InputError, match="two write f0"):
+    with pytest.raises(InputError, match="Two jobs would write f0"):
         run_batch([job, job])
 
 
 def test_too_few_workers_are_refused(tmp_path: Path) -> None:
-    with pytest.raises(InputError, match="workers - 0"):
+    with pytest.raises(InputError, match="workers cannot be 0"):
         run_batch(make_jobs(tmp_path, "good"), workers=0)
 
 

@@ -51,7 +51,7 @@ def test_off_a_terminal_there_is_one_plain_line_per_file(
     assert out.splitlines()[0] == "a.step: done in 0.05 s, 100.0% of the rails developable"
     failures = err.splitlines()
     assert len(failures) == 2
-    assert failures[0] == "wrinkle-cad: b.step: no curves - 0 - 2 - draw"
+    assert failures[0] == "wrinkle-cad: b.step: There are no curves. Draw two."
     assert "SIGKILL" in failures[1]
     assert str(bench.outputs / "index.html") in out
     assert "\x1b" not in out + err
@@ -71,7 +71,7 @@ def test_a_good_batch_exits_with_0_and_again_when_resumed(
 def test_quiet_prints_failures_only(bench: Bench, capfd: pytest.CaptureFixture[str]) -> None:
     bench.put(a="1", b="fail@read")
     assert batch(bench, "--quiet") == 1
-    assert capfd.readouterr() == ("", "wrinkle-cad: b.step: no curves - 0 - 2 - draw\n")
+    assert capfd.readouterr() == ("", "wrinkle-cad: b.step: There are no curves. Draw two.\n")
 
 
 def test_a_machine_gets_json_lines_and_nothing_else(
@@ -106,7 +106,7 @@ def test_a_dry_run_tells_and_writes_nothing(
     assert batch(bench, "--dry-run", "--name", "{stem}") == 1
     out = capfd.readouterr().out.splitlines()
     assert out[0] == "a.step -> a.*: done before"
-    assert out[1].startswith("a.stp -> a.*: name - a is also the name")
+    assert out[1].startswith("a.stp -> a.*: The outputs of a.step would be called a too")
     assert out[2] == "b.step -> b.*: to do"
     assert bench.files() == before
     batch(bench, "--dry-run", "--force", "--json-lines")
@@ -123,7 +123,7 @@ def test_a_mask_names_the_outputs(bench: Bench) -> None:
 @pytest.mark.parametrize(
     ("flags", "complaint"),
     [
-        (("--name", "{size}"), "unknown field"),
+        (("--name", "{size}"), "no field 'size'"),
         (("--memory", "1"), "at least 2 GiB"),
         (("--timeout", "0"), "above 0"),
         (("--workers", "0"), "at least 1"),
@@ -161,7 +161,7 @@ def test_a_folder_in_use_is_wrong_usage(bench: Bench, capfd: pytest.CaptureFixtu
     bench.outputs.mkdir()
     with locked_folder(bench.outputs):
         assert batch(bench) == 2
-    assert "another batch" in capfd.readouterr().err
+    assert "Another batch" in capfd.readouterr().err
 
 
 def test_names_that_are_no_text_do_no_harm(bench: Bench, capfd: pytest.CaptureFixture[str]) -> None:
@@ -171,7 +171,7 @@ def test_names_that_are_no_text_do_no_harm(bench: Bench, capfd: pytest.CaptureFi
     assert batch(bench) == 1
     out, err = capfd.readouterr()
     assert len(err.splitlines()) == 1
-    assert "\\udcff.step - bytes in its path are not UTF-8" in err
+    assert "\\udcff.step has bytes that are not UTF-8" in err
     assert len([line for line in out.splitlines() if "done in" in line]) == 4
     assert "\x1b" not in out
     stems = {name.removesuffix(".step") for name in bench.files() if name.endswith(".step")}
@@ -231,7 +231,7 @@ def test_a_terminal_shows_a_live_display(bench: Bench) -> None:
     os.close(master)
     assert done.returncode == 1
     assert "\x1b[" in shown
-    assert "no curves - 0 - 2 - draw" in shown
+    assert "There are no curves. Draw two." in shown
 
 
 def test_the_display_counts_and_shows_phases_as_text() -> None:

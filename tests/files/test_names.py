@@ -92,11 +92,11 @@ def test_a_mask_may_hold_braces_of_its_own() -> None:
 @pytest.mark.parametrize(
     ("mask", "complaint"),
     [
-        ("{stem", "fields in braces"),
-        ("{size}", "unknown field 'size'"),
-        ("{stem.__class__}", "unknown field"),
-        ("{0}", "unknown field"),
-        ("{}", "unknown field"),
+        ("{stem", "fields stand in braces"),
+        ("{size}", "has no field 'size'"),
+        ("{stem.__class__}", "has no field"),
+        ("{0}", "has no field"),
+        ("{}", "has no field"),
         ("all", "the same for every file"),
     ],
 )

@@ -129,7 +129,7 @@ def judge(record: Record, figures: Figures, timeout_s: float) -> None:
     is_one_line = bool(record.message) and record.message.isprintable()
     if not is_one_line or "Traceback" in record.message:
         figures.bugs.append(f"{record.input}: no line of text: {record.message!r}")
-    if record.message.startswith("internal error"):
+    if record.message.startswith("An internal error"):
         figures.bugs.append(f"{record.input}: {record.message}")
 
 
@@ -172,7 +172,7 @@ def main() -> int:
             given.keep.mkdir(parents=True, exist_ok=True)
             for record in records:
                 is_crash = record.error in ("WorkerKilled", "TimeLimit", "MemoryLimit")
-                if is_crash or record.message.startswith("internal error"):
+                if is_crash or record.message.startswith("An internal error"):
                     shutil.copy(Path(name, "in", record.input), given.keep)
                     sys.stdout.write(f"{record.input}: {record.message}\n")
     return 1 if figures.bugs else 0

@@ -76,7 +76,7 @@ def test_mutations_together_are_seeded() -> None:
         ("", 0.0),
         ("a\nb", 0.0),
         ("Traceback (most recent call last)", 0.0),
-        ("internal error in phase read - KeyError: 1", 0.0),
+        ("An internal error happened in phase read (KeyError: 1). Please report it.", 0.0),
         ("told well", 99.0),
     ],
 )

@@ -210,7 +210,7 @@ def test_a_strip_without_a_matrix_or_pieces_still_has_a_page(good_view: StripVie
 
 def test_faces_beyond_the_vertices_are_refused(good_view: StripView) -> None:
     body = MeshView("upper", np.zeros((3, 3), np.float32), np.array([[0, 1, 3]], np.int32))
-    with pytest.raises(InputError, match=r"body - its faces use vertices 0 to 3 - it has 3"):
+    with pytest.raises(InputError, match=r"faces of a body use vertices 0 to 3, and it has 3"):
         write_page(summary_of([good_view]), [good_view], body)
 
 

@@ -128,5 +128,5 @@ def test_the_matrix_agrees_with_the_path_and_is_read_only() -> None:
 @pytest.mark.parametrize("planarity", [-1.0, np.nan, np.inf])
 def test_a_planarity_that_is_no_distance_is_refused(planarity: float) -> None:
     strip = exact_strips.wrinkled(3).sampled(1e-2)
-    with pytest.raises(InputError, match=r"planarity - .* mm - a finite distance"):
+    with pytest.raises(InputError, match=r"planarity cannot be .* mm: give a finite distance"):
         validity_matrix(strip.p, strip.q, planarity=planarity)

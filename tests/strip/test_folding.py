@@ -104,5 +104,5 @@ def test_folds_areas_and_energies_agree_with_plain_python() -> None:
 
 
 def test_an_unknown_energy_is_refused() -> None:
-    with pytest.raises(InputError, match="energy - 'spring' - one of hinge, paper"):
+    with pytest.raises(InputError, match="energy cannot be 'spring': choose one of hinge, paper"):
         triangulate(*roof(0.4), energy="spring")

@@ -108,11 +108,11 @@ def test_the_result_says_how_it_was_found() -> None:
 @pytest.mark.parametrize("first", ["area", "length"])
 def test_local_search_by_other_criteria_is_refused(first: str) -> None:
     strip = exact_strips.convex_cylinder(1).sampled(1e-2)
-    with pytest.raises(InputError, match=f"search - local with criteria that start with {first}"):
+    with pytest.raises(InputError, match=f"local search cannot start with the criterion {first}"):
         triangulate(strip.p, strip.q, criteria=(first,), search="local")
 
 
 def test_an_unknown_search_is_refused() -> None:
     strip = exact_strips.convex_cylinder(1).sampled(1e-2)
-    with pytest.raises(InputError, match="search - 'fast' - one of global, local"):
+    with pytest.raises(InputError, match="search cannot be 'fast': choose one of global, local"):
         triangulate(strip.p, strip.q, search="fast")

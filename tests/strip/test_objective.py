@@ -81,5 +81,7 @@ def test_counts_are_compared_exactly_and_sums_up_to_round_off() -> None:
 
 @pytest.mark.parametrize("criteria", [(), ("invalid", "invalid"), ("beauty",), ("area", "size")])
 def test_criteria_that_are_no_ordered_choice_are_refused(criteria: tuple[str, ...]) -> None:
-    with pytest.raises(InputError, match=r"criteria - .* - an ordered choice of invalid"):
+    with pytest.raises(
+        InputError, match=r"criteria cannot be .*: give an ordered choice of invalid"
+    ):
         weights_of(criteria, bridge_count=10)

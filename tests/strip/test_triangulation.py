@@ -276,21 +276,27 @@ SIDE = [[0.0, 1, 0], [1, 1, 0], [2, 1, 0]]
 @pytest.mark.parametrize(
     ("p", "message"),
     [
-        ([[0.0, 0], [1, 0]], r"directrix P - shape \(2, 2\)"),
-        ([0.0, 1, 2], r"directrix P - shape \(3,\)"),
-        ([], r"directrix P - shape \(0,\)"),
-        (np.empty((0, 3)), r"directrix P - shape \(0, 3\) - shape \(k, 3\) with k >= 1"),
-        ([["a", 0, 0], [1, 0, 0]], "directrix P - not an array of numbers"),
-        ([[0.0, 0, 0], [1, 0]], "directrix P - not an array of numbers"),
-        ([[0.0, 0, 0], [np.nan, 0, 0]], "directrix P - 1 samples are not finite, .* number 1"),
-        ([[0.0, 0, np.inf], [1, 0, 0]], "directrix P - 1 samples are not finite, .* number 0"),
-        ([[0.0, 0, 0], [1e12, 0, 0]], "directrix P - a coordinate of 1e.12 mm"),
+        ([[0.0, 0], [1, 0]], r"Rail P has the shape \(2, 2\)"),
+        ([0.0, 1, 2], r"Rail P has the shape \(3,\)"),
+        ([], r"Rail P has the shape \(0,\)"),
+        (np.empty((0, 3)), r"Rail P has the shape \(0, 3\)\. Pass an array of shape \(k, 3\)"),
+        ([["a", 0, 0], [1, 0, 0]], "Rail P is no array of numbers"),
+        ([[0.0, 0, 0], [1, 0]], "Rail P is no array of numbers"),
+        (
+            [[0.0, 0, 0], [np.nan, 0, 0]],
+            "Rail P has 1 samples that are not finite; .* number 1",
+        ),
+        (
+            [[0.0, 0, np.inf], [1, 0, 0]],
+            "Rail P has 1 samples that are not finite; .* number 0",
+        ),
+        ([[0.0, 0, 0], [1e12, 0, 0]], "Rail P has a coordinate of 1e.12 mm"),
     ],
 )
 def test_what_is_no_rail_is_refused(p: npt.ArrayLike, message: str) -> None:
     with pytest.raises(InputError, match=message):
         triangulate(p, SIDE)
-    with pytest.raises(InputError, match=message.replace("directrix P", "directrix Q")):
+    with pytest.raises(InputError, match=message.replace("Rail P", "Directrix Q")):
         triangulate(SIDE, p)
 
 
@@ -298,7 +304,7 @@ def test_coincident_rails_are_refused() -> None:
     strip = exact_strips.cylinder(1)
     coarse, fine = strip.sampled(1e-2).p, strip.sampled(1e-4).p
     for p, q in ((fine, fine), (coarse, fine), (fine, coarse), (GOOD, GOOD)):
-        with pytest.raises(InputError, match="P and Q coincide: nowhere more than"):
+        with pytest.raises(InputError, match="P and Q coincide: they are nowhere more than"):
             triangulate(p, q)
 
 
@@ -320,7 +326,7 @@ def test_rails_may_share_one_bank_edge() -> None:
 
 
 def test_a_strip_without_any_area_is_refused() -> None:
-    with pytest.raises(InputError, match="every triangle has zero area"):
+    with pytest.raises(InputError, match="Every triangle of the strip has zero area"):
         triangulate([[0.0, 0, 0], [1, 0, 0]], [[3.0, 0, 0], [4, 0, 0]])
 
 

@@ -72,5 +72,7 @@ def test_a_price_without_effect_is_none_in_the_result(options: dict) -> None:
 @pytest.mark.parametrize("price", [-1.0, 1.1e6, np.nan, np.inf])
 def test_a_price_that_is_no_number_from_0_to_a_million_is_refused(price: float) -> None:
     strip = exact_strips.wrinkled(2).sampled(1e-2)
-    with pytest.raises(InputError, match=r"price - .* - a number from 0 to 1e.06, or None"):
+    with pytest.raises(
+        InputError, match=r"price cannot be .*: give a number from 0 to 1e.06, or None"
+    ):
         triangulate(strip.p, strip.q, price=price)

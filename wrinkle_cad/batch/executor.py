@@ -104,17 +104,17 @@ def make_crew(
         for name, value in (("workers", workers), ("timeout", timeout), ("memory", memory)):
             if value is not None:
                 raise InputError(
-                    f"{name} - {value:g} together with an executor - it cannot be kept there - set"
-                    " it up in the executor, or leave the executor out"
+                    f"{name} cannot be {value:g} together with an executor, where it is not kept:"
+                    " set it up in the executor, or leave the executor out."
                 )
         return ExecutorCrew(executor, in_flight)
     if sys.platform == "win32":
         raise InputError(
-            "worker processes - their limits need a POSIX system - Linux or macOS - give run_batch"
-            " an executor of your own"
+            "The limits of worker processes need Linux or macOS. On this system, give run_batch an"
+            " executor of your own."
         )
     if workers is not None and workers < 1:
-        raise InputError(f"workers - {workers} - at least 1 - give more")
+        raise InputError(f"workers cannot be {workers}: give at least 1.")
     limits = CrewLimits(
         timeout_s=settings.BATCH_TIMEOUT_S if timeout is None else timeout,
         memory_gib=settings.BATCH_MEMORY_GIB if memory is None else memory,
@@ -164,8 +164,8 @@ def _tasks(
             stagings[key] = open_staging(job.output_dir)
         except OSError as error:
             message = (
-                f"output folder {job.output_dir.name} - {error.strerror} - a folder that can be"
-                " written - give another one"
+                f"The output folder {job.output_dir.name} cannot be written to ({error.strerror})."
+                " Give another one."
             )
             outcomes[key] = JobFailed(
                 job=job, phase="write", error=type(error).__name__, message=message
@@ -181,7 +181,7 @@ def _check_distinct(jobs: Iterable[Job]) -> None:
         key = collision_key(PurePosixPath((job.output_dir.absolute() / job.name).as_posix()))
         if key in seen:
             raise InputError(
-                f"jobs - two write {job.name} into {job.output_dir.name} - one name per job - give"
-                " them different names or folders"
+                f"Two jobs would write {job.name} into {job.output_dir.name}. Give them different"
+                " names or folders."
             )
         seen.add(key)

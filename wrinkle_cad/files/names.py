@@ -68,14 +68,16 @@ def check_mask(mask: str) -> None:
     try:
         fields = [field for _, field, _, _ in string.Formatter().parse(mask) if field is not None]
     except ValueError as error:
-        raise JobError(f"--name - {mask!r}: {error} - fields in braces - correct it") from error
+        raise JobError(
+            f"--name cannot be {mask!r} ({error}): fields stand in braces, as in {{stem}}."
+        ) from error
     known = ", ".join(f"{{{field}}}" for field in NAME_FIELDS)
     for field in fields:
         if field not in NAME_FIELDS:
-            raise JobError(f"--name - unknown field {field!r} - known: {known} - correct it")
+            raise JobError(f"--name has no field {field!r}: use some of {known}.")
     if not fields:
         raise JobError(
-            f"--name - {mask!r} is the same for every file - use at least one of {known}"
+            f"--name cannot be {mask!r}, the same for every file: use at least one of {known}."
         )
 
 

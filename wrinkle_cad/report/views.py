@@ -146,8 +146,8 @@ def _mesh_payload(body: MeshView, center: NDArray[np.float64]) -> dict[str, Any]
     count = len(body.vertices)
     if len(body.faces) and not 0 <= int(body.faces.min()) <= int(body.faces.max()) < count:
         raise InputError(
-            f"body - its faces use vertices {int(body.faces.min())} to {int(body.faces.max())} - "
-            f"it has {count} - hand in faces that index the vertices from 0"
+            f"The faces of a body use vertices {int(body.faces.min())} to {int(body.faces.max())},"
+            f" and it has {count}. Hand in faces that index the vertices from 0."
         )
     points = np.asarray(body.vertices, dtype=np.float64) - center
     low = points.min(axis=0) if count else np.zeros(3)

@@ -51,8 +51,8 @@ def checked_criteria(criteria: Criterion | Sequence[Criterion]) -> tuple[Criteri
     if unknown or not names or len(set(names)) < len(names):
         found = ", ".join(map(str, names)) or "none"
         raise InputError(
-            f"criteria - {found} - an ordered choice of {', '.join(_MEASURES)}, each once"
-            ' - for instance ("invalid", "bending")'
+            f"criteria cannot be {found}: give an ordered choice of {', '.join(_MEASURES)}, each"
+            ' once, for instance ("invalid", "bending").'
         )
     return names
 

@@ -33,8 +33,8 @@ def checked_rails(p: npt.ArrayLike, q: npt.ArrayLike) -> tuple[Floats, Floats]:
     rails = _checked_rail(p, "P"), _checked_rail(q, "Q")
     if len(rails[0]) == len(rails[1]) == 1:
         raise InputError(
-            "strip - P and Q are a single point each - at most one of them may be a point"
-            " - pass at least two samples of the other"
+            "P and Q are a single point each. At most one of them may be a point: pass at least two"
+            " samples of the other."
         )
     return rails
 
@@ -44,25 +44,26 @@ def _checked_rail(points: npt.ArrayLike, name: str) -> Floats:
         rail = np.array(points, dtype=np.float64, order="C")
     except (TypeError, ValueError) as error:
         raise InputError(
-            f"directrix {name} - not an array of numbers ({error}) - a (k, 3) array is needed"
-            " - pass one x, y, z per sample"
+            f"Rail {name} is no array of numbers ({error}). Pass a (k, 3) array: one x, y, z"
+            " per sample."
         ) from error
     if rail.ndim != 2 or rail.shape[1] != 3 or rail.shape[0] < 1:
         raise InputError(
-            f"directrix {name} - shape {rail.shape} - shape (k, 3) with k >= 1 is needed -"
-            " pass one x, y, z per sample"
+            f"Rail {name} has the shape {rail.shape}. Pass an array of shape (k, 3) with k >="
+            " 1: one x, y, z per sample."
         )
     bad = np.flatnonzero(~np.isfinite(rail).all(axis=1))
     if bad.size:
         raise InputError(
-            f"directrix {name} - {bad.size} samples are not finite, the first is number {bad[0]}"
-            " - every coordinate must be a finite number - repair the curve or its sampling"
+            f"Rail {name} has {bad.size} samples that are not finite; the first is number"
+            f" {bad[0]}. Every coordinate must be a finite number: repair the curve or its"
+            " sampling."
         )
     largest = float(np.abs(rail).max())
     if largest > LARGEST_COORDINATE:
         raise InputError(
-            f"directrix {name} - a coordinate of {largest:.3g} mm"
-            f" - at most {LARGEST_COORDINATE:.0e} mm - check the unit of the input"
+            f"Rail {name} has a coordinate of {largest:.3g} mm; at most"
+            f" {LARGEST_COORDINATE:.0e} mm is allowed. Check the unit of the input."
         )
     return rail
 
@@ -135,8 +136,8 @@ def checked_planarity(p: Floats, q: Floats, planarity: float | None) -> float:
         return default_planarity(p, q)
     if not (np.isfinite(planarity) and planarity >= 0.0):
         raise InputError(
-            f"planarity - {planarity} mm - a finite distance of at least 0 mm is needed"
-            " - leave it out to have it chosen"
+            f"planarity cannot be {planarity} mm: give a finite distance of at least 0 mm, or leave"
+            " it out to have it chosen."
         )
     return float(planarity)
 
@@ -159,17 +160,17 @@ def check_rails_apart(p: Floats, q: Floats, planarity: float) -> None:
     q_limit = max(planarity, COINCIDENT_SAGITTAS * typical_sagitta(p))
     if p_gap.max() <= p_limit and q_gap.max() <= q_limit:
         raise InputError(
-            f"strip - P and Q coincide: nowhere more than {max(p_gap.max(), q_gap.max()):.3g} mm"
-            f" apart - their sampling tells {max(p_limit, q_limit):.3g} mm"
-            " - choose two different curves"
+            f"P and Q coincide: they are nowhere more than {max(p_gap.max(), q_gap.max()):.3g} mm"
+            f" apart, and their sampling tells {max(p_limit, q_limit):.3g} mm. Choose two different"
+            " curves."
         )
     for name, gap, rail in (("P", p_gap, p), ("Q", q_gap, q)):
         first, last = _longest_run(gap <= planarity)
         if last - first >= 2:
             length = polyline_length(rail[first : last + 1])
             raise InputError(
-                f"strip - P and Q coincide over {length:.3g} mm, from sample {first} to {last} of"
-                f" {name} - they may share one bank edge at most - trim both curves there"
+                f"P and Q coincide over {length:.3g} mm, from sample {first} to {last} of {name}."
+                " They may share one bank edge at most: trim both curves there."
             )
 
 

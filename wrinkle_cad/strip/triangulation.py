@@ -206,7 +206,7 @@ def triangulate(
         ([0.0, 1.571, 0.0], 0)
     """
     if energy not in ENERGIES:
-        raise InputError(f"energy - {energy!r} - one of {', '.join(ENERGIES)} - choose one")
+        raise InputError(f"energy cannot be {energy!r}: choose one of {', '.join(ENERGIES)}.")
     names = checked_criteria(criteria)
     has_price = search == "global" and energy == "hinge" and is_priced(names)
     price = _checked_price(price) if has_price else None
@@ -243,8 +243,8 @@ def triangulate(
 def _checked_price(price: float | None) -> float | None:
     if price is not None and not 0.0 <= price <= LARGEST_PRICE:
         raise InputError(
-            f"price - {price} - a number from 0 to {LARGEST_PRICE:g}, or None, is needed"
-            " - None puts validity before any bending"
+            f"price cannot be {price}: give a number from 0 to {LARGEST_PRICE:g}, or None, which"
+            " puts validity before any bending."
         )
     return None if price is None else float(price)
 
@@ -280,11 +280,11 @@ def _search(
         weights = weights_of(criteria, bridge_count=count, invalid_cost=invalid_cost)
         return best_steps(p, q, weights, planarity=planarity, nothing=nothing, energy=energy)
     if search != "local":
-        raise InputError(f"search - {search!r} - one of global, local - choose one")
+        raise InputError(f"search cannot be {search!r}: choose one of global, local.")
     if criteria[0] not in ("invalid", "bending"):
         raise InputError(
-            f"search - local with criteria that start with {criteria[0]}"
-            " - they must start with invalid or bending - search globally"
+            f"A local search cannot start with the criterion {criteria[0]}, only with invalid or"
+            " bending: search globally."
         )
     return local_steps(
         p,
@@ -335,8 +335,8 @@ def measured(
     )
     if path.is_flat.all():
         raise InputError(
-            "strip - every triangle has zero area - at least one must have some"
-            " - choose two curves that are apart"
+            "Every triangle of the strip has zero area, and at least one must have some: choose two"
+            " curves that are apart."
         )
     arrays: dict[str, Any] = {
         "p": p,

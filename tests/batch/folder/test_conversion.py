@@ -163,7 +163,7 @@ def test_a_setting_that_is_a_file_counts_by_its_content(bench: Bench, name: str)
     path.unlink()
     assert counts(bench.run(keywords=keywords)) == (0, 1, 0)
     (event,) = [event for event in bench.events if isinstance(event, FileFinished)]
-    assert "settings.toml - No such file" in event.record.message
+    assert "settings.toml cannot be read (No such file" in event.record.message
 
 
 def test_limits_missed_fail_the_batch_only_where_that_is_asked_for(bench: Bench) -> None:
@@ -176,7 +176,7 @@ def test_limits_missed_fail_the_batch_only_where_that_is_asked_for(bench: Bench)
 def test_a_folder_in_use_is_refused(bench: Bench) -> None:
     bench.put(a="1")
     bench.outputs.mkdir()
-    with locked_folder(bench.outputs), pytest.raises(InputError, match="another batch"):
+    with locked_folder(bench.outputs), pytest.raises(InputError, match="Another batch"):
         bench.run()
 
 

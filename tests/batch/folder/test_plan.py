@@ -115,7 +115,7 @@ def test_of_two_files_with_the_same_outputs_the_second_is_refused(tmp_path: Path
 
 def test_a_broken_mask_stops_the_plan(tmp_path: Path) -> None:
     put(tmp_path, a="")
-    with pytest.raises(JobError, match="unknown field"):
+    with pytest.raises(JobError, match="has no field"):
         plan(tmp_path, mask="{nonsense}")
 
 

@@ -20,7 +20,7 @@ SUMMARY = BatchSummary(
     folder=Path("out"), done=2, failed=1, skipped=0, left=0, missed_limits=0, seconds=1.0
 )
 FAILED = replace(
-    RECORD, key="f", input="f.step", outcome="failed", outputs=(), figures={}, message="bad - x"
+    RECORD, key="f", input="f.step", outcome="failed", outputs=(), figures={}, message="bad, x"
 )
 
 
@@ -60,7 +60,7 @@ def test_the_page_lists_the_most_developable_first_and_failures_last() -> None:
     page = Page(index_page([FAILED, done("worse", 10.0), done("better", 99.0)], SUMMARY))  # type: ignore[list-item]
     assert [row.split(".step")[0] for row in page.rows[1:]] == ["better", "worse", "f"]
     assert page.links == ["better.html", "worse.html"]
-    assert "failed: bad - x" in page.rows[-1]
+    assert "failed: bad, x" in page.rows[-1]
 
 
 @pytest.mark.parametrize(
@@ -84,7 +84,7 @@ def test_the_table_has_a_row_for_each_record(tmp_path: Path) -> None:
     assert [row["input"] for row in rows] == ["x.step", "f.step"]
     assert float(rows[0]["developability"]) == 98.5
     assert rows[0]["overlaps"] == "no"
-    assert rows[1]["message"] == "bad - x"
+    assert rows[1]["message"] == "bad, x"
 
 
 @pytest.mark.parametrize(

@@ -65,7 +65,7 @@ def test_a_hang_ends_at_its_time_limit(bench: Bench) -> None:
     assert time.monotonic() - start < 4 * 4.0
     for record in records.values():
         assert record.error == "TimeLimit"
-        assert "limit 4 s" in record.message
+        assert "the limit is 4 s" in record.message
 
 
 def test_memory_beyond_the_limit_is_named(bench: Bench) -> None:
@@ -78,7 +78,7 @@ def test_memory_beyond_the_limit_is_named(bench: Bench) -> None:
     )
     for record in records.values():
         assert record.error == "MemoryLimit", record
-        assert "limit 2 GiB" in record.message
+        assert "the limit is 2 GiB" in record.message
     assert "SIGABRT" in records["creeping"].message
 
 

@@ -131,7 +131,7 @@ def test_crossing_is_told_however_the_rails_are_drawn() -> None:
 
 def test_a_rail_that_uses_an_edge_twice_is_refused() -> None:
     side = b3d.Solid.make_cone(60, 30, 50).faces().sort_by(b3d.Axis.Z)[1]
-    with pytest.raises(InputError, match=r"rail P runs twice over one edge, from \(60.00, 0.00, "):
+    with pytest.raises(InputError, match=r"Rail P runs twice over one edge, from \(60.00, 0.00, "):
         make_directrix(side.outer_wire(), name="P")
     edge = b3d.Line((0, 0, 0), (10, 0, 0))
     with pytest.raises(InputError, match="runs twice over one edge"):

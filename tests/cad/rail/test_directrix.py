@@ -134,7 +134,9 @@ def test_a_circle_is_closed_and_smooth() -> None:
 
 
 def test_a_gap_is_refused_with_its_size_and_place() -> None:
-    message = r"rail P - gap of 0\.5 mm between edges 1 and 2 at \(3, 4, 0\) - limit 0\.0006 mm"
+    message = (
+        r"Rail P has a gap of 0\.5 mm between edges 1 and 2 at \(3, 4, 0\); at most 0\.0006 mm"
+    )
     with pytest.raises(InputError, match=message):
         make_directrix([line(A, B), line((3.0, 4.5, 0.0), D)], name="P")
 
@@ -209,23 +211,23 @@ def test_one_point_is_a_rail_without_length(source: object) -> None:
 @pytest.mark.parametrize(
     ("source", "message"),
     [
-        (None, "found NoneType"),
-        (3, "found int"),
-        ("edge", "found str"),
+        (None, "cannot be of type NoneType"),
+        (3, "cannot be of type int"),
+        ("edge", "cannot be of type str"),
         ([], "no curve in it"),
         (TopoDS_Edge(), "empty TopoDS_Edge"),
         (np.zeros((4, 2)), "array of shape"),
         (np.array([A, (1.0, math.nan, 0.0)]), "NaN or infinite"),
-        (np.array([A, B, B, C]), "points 2 and 3 are 0 mm apart"),
-        (line((0.0, 0.0, 0.0), (9e-7, 0.0, 0.0)), "length 9e-07 mm"),
-        (box(), "found a solid"),
-        (faces_of(box())[0], "found a face"),
-        (make_compound(faces_of(box())), "found a compound"),
+        (np.array([A, B, B, C]), "points 2 and 3 that are 0 mm apart"),
+        (line((0.0, 0.0, 0.0), (9e-7, 0.0, 0.0)), "9e-07 mm long"),
+        (box(), "cannot be a solid"),
+        (faces_of(box())[0], "cannot be a face"),
+        (make_compound(faces_of(box())), "cannot be a compound"),
         (make_compound([]), "no curve in it"),
     ],
 )
 def test_what_is_no_rail_is_refused(source: object, message: str) -> None:
-    with pytest.raises(InputError, match=f"^rail Q - .*{message}"):
+    with pytest.raises(InputError, match=f"^Rail Q .*{message}"):
         make_directrix(source, name="Q")
 
 
@@ -345,7 +347,7 @@ def test_one_curve_given_twice_is_refused_however_it_is_run() -> None:
     elevated.IncreaseDegree(6)
     again = make_directrix(BRepBuilderAPI_MakeEdge(elevated).Edge(), name="two")
     for q in (p, again, reversed_directrix(p)):
-        with pytest.raises(InputError, match=r"^rails one and .*same curve.* mm is needed"):
+        with pytest.raises(InputError, match=r"^Rails one and .*same curve.* mm is needed"):
             check_distinct(p, q)
 
 
@@ -353,7 +355,7 @@ def test_one_curve_at_another_speed_is_the_same_curve() -> None:
     straight = make_directrix(line(A, B), name="P")
     # The same line, run slowly at first: poles along it, unevenly spread.
     uneven = make_directrix(edge_of([A, (0.3, 0.4, 0.0), (0.6, 0.8, 0.0), B], 3), name="Q")
-    with pytest.raises(InputError, match="rails P and Q"):
+    with pytest.raises(InputError, match="Rails P and Q"):
         check_distinct(straight, uneven)
 
 
@@ -377,6 +379,6 @@ def test_the_coincident_pair_of_a_real_file_is_refused(realdata: Path) -> None:
     )
     check_distinct(first, second)
     check_distinct(second, third)
-    with pytest.raises(InputError, match="rails 1 and 3 - they are the same curve"):
+    with pytest.raises(InputError, match="Rails 1 and 3 are the same curve"):
         check_distinct(first, third)
     assert len(first.breaks) == 1

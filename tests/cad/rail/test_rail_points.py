@@ -39,7 +39,7 @@ def test_points_on_a_curve_are_as_far_along_as_an_independent_integral_says() ->
 def test_an_arc_beyond_the_rail_is_refused() -> None:
     rail = make_directrix(np.array([[0.0, 0, 0], [10, 0, 0]]))
     for arc in (-1.0, 10.1):
-        with pytest.raises(InputError, match="arc length"):
+        with pytest.raises(InputError, match="Arc lengths"):
             points_at_arcs(rail, [arc])
 
 

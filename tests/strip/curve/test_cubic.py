@@ -48,5 +48,5 @@ def test_the_points_given_are_left_as_they_are() -> None:
 
 @pytest.mark.parametrize("at", [[0.0, 1.0, 1.0, 2.0], [0.0, 2.0, 1.0, 3.0], [0.0, 1.0, np.nan, 2]])
 def test_points_that_coincide_are_refused(at: list[float]) -> None:
-    with pytest.raises(InputError, match="points 2 and 3 of 4 coincide"):
+    with pytest.raises(InputError, match="Points 2 and 3 of the 4 of a curve coincide"):
         cubic_through(np.array(at), np.zeros((4, 3)))

@@ -391,9 +391,11 @@ def test_a_needle_between_the_first_points_is_found_by_its_foot() -> None:
 
 @pytest.mark.parametrize("tolerance", [0.0, -1.0, np.nan, np.inf])
 def test_a_tolerance_that_is_no_positive_length_is_refused(tolerance: float) -> None:
-    with pytest.raises(InputError, match=r"^tolerance - is .* mm - must be finite and above 0 mm"):
+    with pytest.raises(
+        InputError, match=r"^tolerance cannot be .* mm: give a finite length above 0 mm"
+    ):
         sample_curve(circle, (0.0, 1.0), tolerance)
-    with pytest.raises(InputError, match=r"^max_chord - is "):
+    with pytest.raises(InputError, match=r"^max_chord cannot be "):
         sample_curve(circle, (0.0, 1.0), 0.1, max_chord=tolerance)
 
 
@@ -413,7 +415,7 @@ def test_an_interval_without_extent_is_refused(interval: tuple[float, float], me
 
 @pytest.mark.parametrize("breaks", [[2.0], [-0.1], [np.nan], [[0.5]]])
 def test_breaks_that_are_not_on_the_curve_are_refused(breaks: list[float]) -> None:
-    with pytest.raises(InputError, match=r"^breaks - "):
+    with pytest.raises(InputError, match=r"^(The break|breaks cannot be) "):
         sample_curve(circle, (0.0, 1.0), 0.1, breaks=breaks)
 
 
@@ -422,14 +424,14 @@ def test_curves_that_are_no_curves_are_refused() -> None:
         sample_curve(lambda t: circle(np.where(t > 0.5, np.nan, t)), (0.0, 1.0), 0.1)
     with pytest.raises(InputError, match=r"array of shape \(1088, 2\)"):
         sample_curve(lambda t: circle(t)[:, :2], (0.0, 1.0), 0.1)
-    with pytest.raises(InputError, match="all its points coincide"):
+    with pytest.raises(InputError, match="All points of the curve coincide"):
         sample_curve(lambda t: circle(0 * t), (0.0, 1.0), 0.1)
     with pytest.raises(InputError, match=r"jumps by .* mm at parameter 0\.3"):
         sample_curve(lambda t: circle(t + (t > 0.3)), (0.0, 1.0), 0.1)
 
 
 def test_tolerances_below_what_can_be_done_are_refused() -> None:
-    with pytest.raises(InputError, match="can be told from round-off"):
+    with pytest.raises(InputError, match=r"mm is round-off\. Raise it"):
         sample_curve(lambda t: circle(t) + 1e6, (0.0, 1.0), 1e-6)
-    with pytest.raises(InputError, match="ask for too many vertices"):
+    with pytest.raises(InputError, match=r"asks? for too many vertices"):
         sample_curve(line, (0.0, 1.0), 1.0, max_chord=1e-7)

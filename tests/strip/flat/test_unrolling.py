@@ -559,13 +559,13 @@ def test_a_rail_of_one_sample_unrolls_into_a_point() -> None:
 def test_wrong_input_is_refused() -> None:
     sampling = sampled(CYLINDER, 0.1)
     for tolerance in (0.0, -1.0, np.nan, np.inf):
-        with pytest.raises(InputError, match=r"^tolerance - is .* mm - must be finite and above"):
+        with pytest.raises(InputError, match=r"^tolerance cannot be .* mm: give a finite"):
             with_cones(CYLINDER, sampling, tolerance)
     other = sampled(CYLINDER, 0.01)
-    with pytest.raises(InputError, match=r"^P - \d+ samples for \d+ points"):
+    with pytest.raises(InputError, match=r"^P has \d+ samples for \d+ points"):
         with_cones(CYLINDER, sampling._replace(p_samples=other.p_samples))
     moved = Samples(sampling.q_samples.parameters, sampling.q_samples.points + 0.1)
-    with pytest.raises(InputError, match=r"^Q - samples lie up to 0\.1 mm"):
+    with pytest.raises(InputError, match=r"^The samples of Q lie up to 0\.1 mm"):
         with_cones(CYLINDER, sampling._replace(q_samples=moved))
     broken = CYLINDER._replace(
         p_at=lambda t: CYLINDER.p_at(t) * np.where(t > 1, np.nan, 1)[:, None]

@@ -79,8 +79,8 @@ def convert(
             # The listener's: whoever read our lines went away.
             raise
         except OSError as error:
-            message = f"{error.strerror or error} - a folder that can be written, with room"
-            raise ExportError(folder, "folder", f"{message} - correct it and run again") from error
+            message = f"{error.strerror or error}. Give a folder that can be written, with room."
+            raise ExportError(folder, "folder", message) from error
     finally:
         crew.kill()
 
@@ -228,7 +228,7 @@ class _Conversion:
             base, done, content = self._looked_up(entry)
         except OSError as error:
             culprit = printable(Path(error.filename or entry.source.path).name)
-            message = f"read {culprit} - {error.strerror} - a file that can be read - correct it"
+            message = f"{culprit} cannot be read ({error.strerror}). Check the file."
             self._refuse(key, "read", type(error).__name__, message)
             return None
         except Exception as error:
@@ -241,8 +241,8 @@ class _Conversion:
             staging = open_staging(entry.job.output_dir)
         except OSError as error:
             message = (
-                f"output folder of {entry.key} - {error.strerror} - a folder that can be written -"
-                " correct it"
+                f"The output folder of {entry.key} cannot be written to ({error.strerror})."
+                " Check its permissions."
             )
             self._refuse(key, "write", type(error).__name__, message)
             return None

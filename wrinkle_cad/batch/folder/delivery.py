@@ -165,8 +165,8 @@ def _check_names(job: Job, result: TaskResult) -> None:
     for name in (*names, *result.output_bytes):
         if not is_plain_name(name) or not name.startswith(prefix) or name not in names:
             raise JobError(
-                f"worker - named the output {printable(str(name))} - names begin with"
-                f" {printable(prefix)} - look at who runs the workers"
+                f"A worker named an output {printable(str(name))}, and names must begin with"
+                f" {printable(prefix)}. Look at who runs the workers."
             )
 
 
@@ -179,8 +179,8 @@ def _write_failure(job: Job, outcome: JobDone, error: Exception) -> JobFailed:
     message = str(error)
     if isinstance(error, OSError):
         message = (
-            f"write outputs of {job.name} - {error.strerror or error} - a folder that can be"
-            " written, with room - correct it and run the same command again"
+            f"The outputs of {job.name} cannot be written ({error.strerror or error})."
+            " See that the folder can be written and has room, and run the same command again."
         )
     return JobFailed(
         job=job,

@@ -22,6 +22,6 @@ def check_disk_space(folder: Path, *, least_mib: int = settings.BATCH_DISK_FREE_
         raise ExportError(
             folder,
             "folder",
-            f"{free / _MIB:.0f} MiB free on its disk - at least {least_mib} MiB - make room and run"
-            " the same command again: it goes on where it stopped",
+            f"its disk has {free / _MIB:.0f} MiB free, at least {least_mib} MiB are needed. Make"
+            " room and run the same command again: it goes on where it stopped.",
         )

@@ -70,25 +70,25 @@ def _expand(argument: str, output_dir: Path, notes: list[str]) -> tuple[Path, It
     if path.is_dir():
         if path.resolve() == output_dir:
             raise InputError(
-                f"output folder {printable(argument)} - is also an input folder - inputs are never"
-                " written to - give another -o DIR"
+                f"The output folder {printable(argument)} is also an input folder, and inputs are"
+                " never written to. Give another -o DIR."
             )
         return path, list(_files_below(path, output_dir, notes))
     if path.exists():
         return path.parent, [path]
     if not glob.has_magic(argument):
-        raise InputError(f"input {printable(argument)} - no such file or folder - check the path")
+        raise InputError(f"There is no file or folder {printable(argument)}. Check the path.")
     matches = [Path(match) for match in glob.iglob(argument, recursive=True)]  # noqa: PTH207 - Path.glob takes no absolute patterns
     files = [match for match in matches if _is_input(match, output_dir)]
     if not files:
-        raise InputError(f"input {printable(argument)} - no CAD file matches - check the pattern")
+        raise InputError(f"No CAD file matches {printable(argument)}. Check the pattern.")
     return _fixed_part(argument), files
 
 
 def _files_below(folder: Path, output_dir: Path, notes: list[str]) -> Iterator[Path]:
     def note(error: OSError) -> None:
         where = printable(str(error.filename))
-        notes.append(f"folder {where} - {error.strerror} - left out - check its permissions")
+        notes.append(f"The folder {where} was left out ({error.strerror}). Check its permissions.")
 
     for root, folders, names in os.walk(folder, onerror=note):
         here = Path(root)

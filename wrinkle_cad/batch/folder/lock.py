@@ -32,8 +32,8 @@ def locked_folder(folder: Path) -> Iterator[None]:
         import fcntl
     except ImportError as error:
         raise InputError(
-            "batch - this system has no POSIX file locks - Linux or macOS is needed - use run for"
-            " each file, or run_batch with an executor of your own"
+            "batch needs the file locks of Linux or macOS. On this system, use run for each file,"
+            " or run_batch with an executor of your own."
         ) from error
     handle = open_own(folder / LOCK_NAME, [_BEGINNING])
     try:
@@ -43,8 +43,8 @@ def locked_folder(folder: Path) -> Iterator[None]:
             said = os.read(handle, 100).removeprefix(_BEGINNING).decode("ascii", "replace")
             holder = printable(said.strip()) or "unknown"
             raise InputError(
-                f"output folder {folder.name} - another batch is writing to it (process {holder}) -"
-                " one at a time - wait for it or give another -o DIR"
+                f"Another batch is writing to the output folder {folder.name} (process {holder})."
+                " Wait for it or give another -o DIR."
             ) from error
         os.ftruncate(handle, 0)
         os.write(handle, _BEGINNING + f"{os.getpid()}\n".encode("ascii"))

@@ -88,8 +88,8 @@ def plan_batch(
         first = taken.setdefault(collision_key(PurePosixPath(entry.key)), source)
         if first is not source and not entry.refusal:
             refusal = (
-                f"name - {entry.key} is also the name of the outputs of {first.label} - one name"
-                ' per file - give for example --name "{stem}-{suffix}" or "{folder}-{stem}"'
+                f"The outputs of {first.label} would be called {entry.key} too, and each file"
+                ' needs a name of its own: give --name "{stem}-{suffix}" or "{folder}-{stem}".'
             )
             entry = PlannedJob(source=source, key=entry.key, job=entry.job, refusal=refusal)
         planned.append(entry)
@@ -121,8 +121,8 @@ def _plan_one(
         )
     if not refusal and not target.resolve().is_relative_to(output_dir.resolve()):
         refusal = (
-            f"output folder {folder} - a link that leads out of {output_dir.name} - outputs stay"
-            " inside - remove the link"
+            f"The output folder {folder} is a link that leads out of {output_dir.name}, and"
+            " outputs stay inside. Remove the link."
         )
     key = (folder / default_name).as_posix()
     return PlannedJob(source=source, key=key, job=job, refusal=refusal)
@@ -145,8 +145,8 @@ def _unreadable_name(source: Source) -> str:
         str(source.path).encode("utf-8")
     except UnicodeEncodeError:
         return (
-            f"input {source.label} - bytes in its path are not UTF-8 - outputs name their input -"
-            " rename it"
+            f"The path of {source.label} has bytes that are not UTF-8, and outputs name their"
+            " input. Rename it."
         )
     return ""
 

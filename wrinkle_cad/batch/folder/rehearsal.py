@@ -50,7 +50,7 @@ def rehearse(
             earlier = manifest.latest(base.key, base.input)
             is_done = not force and is_up_to_date(earlier, base, folder)
         except OSError as error:
-            yield entry, f"{entry.source.label} - {error.strerror} - a file that can be read"
+            yield entry, f"{entry.source.label} cannot be read ({error.strerror}). Check the file."
             continue
         except Exception as error:
             yield entry, trouble_of(entry.source, error)

@@ -32,23 +32,23 @@ def cluster_executor(address: str) -> Iterator[tuple[Executor, int]]:
         from distributed import Client
     except ImportError as error:
         raise InputError(
-            "--scheduler - the package distributed is not installed - it comes with an extra -"
-            " install wrinkle-cad[cluster]"
+            "--scheduler needs the package distributed, which is not installed. It comes with an"
+            " extra: install wrinkle-cad[cluster]."
         ) from error
     try:
         client = Client(address, timeout=_CONNECT_S, set_as_default=False)
     except (OSError, TimeoutError, ValueError) as error:
         reason = printable(" ".join(str(error).split()))
         raise InputError(
-            f"--scheduler {printable(address)} - {reason} - a running Dask scheduler - check the"
-            " address"
+            f"No running Dask scheduler was reached at {printable(address)} ({reason})."
+            " Check the address."
         ) from error
     try:
         threads = sum(client.nthreads().values())
         if not threads:
             raise InputError(
-                f"--scheduler {printable(address)} - it has no workers - at least one - start some"
-                " with: dask worker ADDRESS --nthreads 1"
+                f"The Dask scheduler at {printable(address)} has no workers, at least one is"
+                " needed. Start one with 'dask worker ADDRESS --nthreads 1'."
             )
         yield (
             client.get_executor(pure=False, retries=0),

@@ -36,12 +36,12 @@ class CrewLimits:
             InputError: a timeout that is not positive, too little memory.
         """
         if self.timeout_s is not None and not 0 < self.timeout_s < float("inf"):
-            raise InputError(f"--timeout - {self.timeout_s:g} s - above 0 - give seconds")
+            raise InputError(f"--timeout cannot be {self.timeout_s:g} s: give seconds above 0.")
         least = settings.BATCH_LEAST_MEMORY_GIB
         if self.memory_gib is not None and not least <= self.memory_gib < float("inf"):
             raise InputError(
-                f"--memory - {self.memory_gib:g} GiB - at least {least:g} GiB: the CAD kernel needs"
-                " more than half of that before it reads a file - give more"
+                f"--memory cannot be {self.memory_gib:g} GiB: give at least {least:g} GiB. The CAD"
+                " kernel needs more than half of that before it reads a file."
             )
 
     @property
@@ -87,27 +87,27 @@ def _cause(ending: Ending, limits: CrewLimits) -> tuple[str, str]:
     where = f" in phase {ending.phase}" if ending.phase else " before the first phase"
     if ending.is_late:
         return "TimeLimit", (
-            f"time{where} - {ending.seconds:.1f} s - limit {limits.timeout_s:g} s - give more with"
-            " --timeout or a coarser --tolerance"
+            f"The time was up{where}: {ending.seconds:.1f} s, the limit is {limits.timeout_s:g} s."
+            " Give more with --timeout or a coarser --tolerance."
         )
     if _hit_memory(ending, limits):
         peak = max(ending.peak_bytes, ending.fault.peak_bytes if ending.fault else 0)
         return "MemoryLimit", (
-            f"memory{where} - {peak / GIB:.2f} GiB mapped when more was asked for"
-            f" ({_manner(ending)}) - limit {limits.memory_gib or 0:g} GiB - give more with --memory"
-            " or a coarser --tolerance"
+            f"The memory was used up{where}: {peak / GIB:.2f} GiB were mapped when more was asked"
+            f" for ({_manner(ending)}), the limit is {limits.memory_gib or 0:g} GiB. Give more with"
+            " --memory or a coarser --tolerance."
         )
     if ending.fault is not None:
         text = printable(" ".join(ending.fault.message.split())) or "no message"
         if ending.fault.is_expected:
             return ending.fault.error, text
         return ending.fault.error, (
-            f"internal error{where} - {ending.fault.error}: {text} - none expected - please"
-            " report it with the file"
+            f"An internal error happened{where} ({ending.fault.error}: {text}). Please report it"
+            " with the file."
         )
     return "WorkerKilled", (
-        f"worker{where} - ended by {_manner(ending)} - it should live on - look at the file with"
-        " inspect, then try it alone with run"
+        f"The worker was ended{where} by {_manner(ending)}. Look at the file with inspect, then try"
+        " it alone with run."
     )
 
 

@@ -84,9 +84,9 @@ def _failure(job: Job, error: BaseException) -> JobFailed:
     text = printable(" ".join(str(error).split())) or "no message"
     is_lost = isinstance(error, BrokenExecutor | CancelledError) or name == "KilledWorker"
     if is_lost:
-        message = f"worker - lost: {name}: {text} - it should live on - look at the executor's log"
+        message = f"The worker was lost ({name}: {text}). Look at the executor's log."
     else:
-        message = f"worker - {name}: {text} - none expected - try the file alone with run"
+        message = f"The worker raised {name} ({text}). Try the file alone with run."
     return JobFailed(
         job=job, phase="worker", error="WorkerKilled" if is_lost else name, message=message
     )

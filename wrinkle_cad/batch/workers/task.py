@@ -94,6 +94,6 @@ def _check_versions(wanted: Mapping[str, str] | None) -> None:
     for name in _COMPARED_VERSIONS:
         if here.get(name) != wanted.get(name):
             raise JobError(
-                f"worker - has {name} {here.get(name)} - {wanted.get(name)} as where the batch was"
-                " started - install the same versions everywhere"
+                f"The worker has {name} {here.get(name)}, and the batch was started with"
+                f" {wanted.get(name)}. Install the same versions everywhere."
             )

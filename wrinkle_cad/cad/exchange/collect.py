@@ -105,7 +105,7 @@ def listed(source: Source, found: Sequence[Found], mm_per_unit: float) -> tuple[
         try:
             measure = length_of(shape) if is_curve else _rough_area(shape)
         except CadError as error:
-            raise source.fail(f"damaged: a {kind} cannot be measured ({error.message})") from error
+            raise source.fail(f"damaged, a {kind} cannot be measured: {error.message}") from error
         if measure <= 0.0 and not vertices_of(shape):
             continue
         index = len(kept) + 1

@@ -36,8 +36,8 @@ _MARKS = (
     (b"\xfe\xff", "utf-16"),
 )
 _STRANGERS = (
-    (re.compile(rb"PK\x03\x04"), "a ZIP archive - unpack it first"),
-    (re.compile(rb"\s*<(!DOCTYPE\s+html|html)", re.I), "a web page - download the file itself"),
+    (re.compile(rb"PK\x03\x04"), "a ZIP archive, to be unpacked first"),
+    (re.compile(rb"\s*<(!DOCTYPE\s+html|html)", re.I), "a web page instead of the file itself"),
     (re.compile(rb"\s*(<\?xml[^>]*>\s*)?<[\w:]*iso_10303_28", re.I), "STEP as XML (part 28)"),
     (re.compile(rb"%PDF-"), "a PDF"),
     (re.compile(rb"solid\b.*facet", re.DOTALL), "an STL mesh, which has no exact curves"),

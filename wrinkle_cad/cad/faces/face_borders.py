@@ -89,7 +89,10 @@ def sub_curve(curve: Geom_BSplineCurve, first: float, last: float) -> Geom_BSpli
     """Returns the part of a curve between two parameters, as a curve of its own."""
     part = curve.Copy()
     if not isinstance(part, Geom_BSplineCurve):
-        raise CadError("cut a rail at its samples", f"the copy is a {type(part).__name__}")
+        raise CadError(
+            "cut a rail at its samples",
+            f"the copy of its curve is a {type(part).__name__}. Check the rail.",
+        )
     part.Segment(first, last)
     return part
 

@@ -68,7 +68,7 @@ def build_shell(
         CadError: no face is left, or the shell is not valid.
     """
     if kind not in KINDS:
-        raise InputError(f"surface - {kind!r} - one of {', '.join(KINDS)} - choose one")
+        raise InputError(f"surface cannot be {kind!r}: choose one of {', '.join(KINDS)}.")
     _check_samples(triangulation, p_samples, q_samples)
     has_curves = kind == "cones"
     samples = p_samples, q_samples
@@ -91,7 +91,7 @@ def build_shell(
     if not faces:
         raise CadError(
             "make the faces of a strip",
-            f"every face is thinner than {skeleton.limit:.1e} mm - sample the rails more finely",
+            f"every face is thinner than {skeleton.limit:.1e} mm. Sample the rails more finely.",
         )
     shell = _shell_of(faces)
     check_valid(shell, "make the faces of a strip")
@@ -102,8 +102,8 @@ def _check_samples(triangulation: Triangulation, p: Samples, q: Samples) -> None
     for name, given, own in (("P", p, triangulation.p), ("Q", q, triangulation.q)):
         if not np.array_equal(given.points, own):
             raise InputError(
-                f"samples of {name} - {len(given.points)} points that are not the {len(own)} of the"
-                " triangulation - pass the samples that were triangulated"
+                f"The {len(given.points)} samples of {name} are not the {len(own)} points of the"
+                " triangulation. Pass the samples that were triangulated."
             )
 
 

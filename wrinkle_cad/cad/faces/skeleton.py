@@ -120,7 +120,7 @@ class Skeleton:
                 raise CadError(
                     "make the faces of a strip",
                     f"two faces side by side at bridge {bridge} are thinner than {self.limit:.1e}"
-                    " mm - sample the rails more finely or move them apart",
+                    " mm. Sample the rails more finely or move them apart.",
                 )
             self._replaced[bridge] = (fan, gap)
         return True

@@ -35,7 +35,7 @@ def chain_of(source: object, name: str) -> list[PoleCurve]:
     Args:
         source: an edge, wire, compound of edges, or several edges and wires in order; from
             build123d, CadQuery or the kernel itself.
-        name: what messages call the rail.
+        name: what messages call the rail, at the start of a sentence.
 
     Raises:
         InputError: no curve in the source, a surface in it, an edge of no length, or a gap.
@@ -46,11 +46,13 @@ def chain_of(source: object, name: str) -> list[PoleCurve]:
     curves = [_curve_of(edge) for edge in edges if not BRep_Tool.Degenerated_s(edge)]
     curves = [curve for curve in curves if _size(curve) > settings.CONFUSION] or curves
     if not curves:
-        raise InputError(f"{name} - no curve in it - at least one edge is needed - pass a curve")
+        raise InputError(f"{name} has no curve in it. Pass at least one edge.")
     _check_once(curves, name)
     for curve in curves:
         if not np.isfinite(curve.poles).all():
-            raise InputError(f"{name} - a curve with NaN or infinite poles - pass finite geometry")
+            raise InputError(
+                f"{name} has a curve with NaN or infinite poles. Pass finite geometry."
+            )
     if len(shapes) == 1 and shapes[0].ShapeType() == TopAbs_COMPOUND:
         curves = _ordered(curves)
     return _joined(_turned(curves), name)
@@ -60,7 +62,7 @@ def _shapes_of(source: object, name: str) -> list[TopoDS_Shape]:
     shape = source if isinstance(source, TopoDS_Shape) else getattr(source, "wrapped", None)
     if isinstance(shape, TopoDS_Shape):
         if shape.IsNull():
-            raise InputError(f"{name} - an empty {type(source).__name__} - pass one with a curve")
+            raise InputError(f"{name} is an empty {type(source).__name__}. Pass one with a curve.")
         return [shape]
     values = getattr(source, "vals", None)  # CadQuery's Workplane
     line = getattr(source, "line", None)  # build123d's BuildLine
@@ -71,8 +73,8 @@ def _shapes_of(source: object, name: str) -> list[TopoDS_Shape]:
     if isinstance(source, Iterable) and not isinstance(source, str | bytes):
         return [shape for item in source for shape in _shapes_of(item, name)]
     raise InputError(
-        f"{name} - found {type(source).__name__} - an edge, a wire, a list of edges or a (k, 3)"
-        " array is needed - pass one of these"
+        f"{name} cannot be of type {type(source).__name__}: pass an edge, a wire, a list of edges"
+        " or a (k, 3) array."
     )
 
 
@@ -85,7 +87,7 @@ def _edges_in_order(shape: TopoDS_Shape, name: str) -> list[TopoDS_Edge]:
     if kind == TopAbs_COMPOUND and not TopExp_Explorer(shape, TopAbs_FACE).More():
         return edges_of(shape)
     raise InputError(
-        f"{name} - found a {kind_name(shape)} - a rail is a curve - pass one of its edges or wires"
+        f"{name} cannot be a {kind_name(shape)}: pass a curve, such as one of its edges or wires."
     )
 
 
@@ -179,9 +181,9 @@ def _joined(curves: Sequence[PoleCurve], name: str) -> list[PoleCurve]:
         if gap > limit:
             x, y, z = ends[i - 1, 1]
             raise InputError(
-                f"{name} - gap of {gap:.4g} mm between edges {i} and {i + 1} at"
-                f" ({x:.4g}, {y:.4g}, {z:.4g}) - limit {limit:.4g} mm - join the edges or pass"
-                " them in order"
+                f"{name} has a gap of {gap:.4g} mm between edges {i} and {i + 1} at"
+                f" ({x:.4g}, {y:.4g}, {z:.4g}); at most {limit:.4g} mm is allowed. Join the edges"
+                " or pass them in order."
             )
         ends[i, 0] = ends[i - 1, 1] = (ends[i, 0] + ends[i - 1, 1]) / 2.0
     # The ends of one edge are where its author put them; only edges are joined to one another.

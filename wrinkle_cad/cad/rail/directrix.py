@@ -127,7 +127,7 @@ def make_directrix(source: object, *, name: str = "") -> Directrix:
     """
     if isinstance(source, Directrix):
         return source
-    label = f"rail {name}" if name else "rail"
+    label = f"Rail {name}" if name else "The rail"
     points = _points_in(source)
     apex = apex_in(source if points is None else points)
     if apex is not None:
@@ -182,17 +182,17 @@ def _coordinates(item: object) -> tuple[object, ...] | None:
 def _polyline(points: Floats, label: str) -> PoleCurve:
     if points.ndim != 2 or points.shape[1] != 3 or len(points) < 2:
         raise InputError(
-            f"{label} - found an array of shape {points.shape} - (k, 3) with k >= 2 is needed -"
-            " pass one row of x, y, z in mm per point"
+            f"{label} cannot be an array of shape {points.shape}: pass one of shape (k, 3), a row"
+            " of x, y, z in mm per point."
         )
     if not np.isfinite(points).all():
-        raise InputError(f"{label} - points with NaN or infinite coordinates - remove them")
+        raise InputError(f"{label} has points with NaN or infinite coordinates. Remove them.")
     chords = segment_lengths(points)
     if chords.min() <= settings.CONFUSION:
         i = int(chords.argmin())
         raise InputError(
-            f"{label} - points {i + 1} and {i + 2} are {chords[i]:.3g} mm apart - more than"
-            f" {settings.CONFUSION:.0e} mm is needed - remove one of them"
+            f"{label} has points {i + 1} and {i + 2} that are {chords[i]:.3g} mm apart; more than"
+            f" {settings.CONFUSION:.0e} mm is needed. Remove one of them."
         )
     multiplicities = np.ones(len(points), dtype=np.int64)
     multiplicities[[0, -1]] = 2
@@ -210,8 +210,8 @@ def _assemble(
     total = float(sum(lengths))
     if not total > settings.RAIL_LENGTH_MIN:
         raise InputError(
-            f"{label} - length {total:.3g} mm - more than {settings.RAIL_LENGTH_MIN:.0e} mm is"
-            " needed - pass a longer curve"
+            f"{label} is {total:.3g} mm long, more than {settings.RAIL_LENGTH_MIN:.0e} mm is"
+            " needed. Pass a longer curve."
         )
     joints = np.concatenate(([0.0], np.cumsum(lengths)))
     placed = tuple(
@@ -350,8 +350,8 @@ def check_distinct(p: Directrix, q: Directrix) -> None:
     if apart <= limit:
         names = " and ".join(rail.name or default for rail, default in ((p, "P"), (q, "Q")))
         raise InputError(
-            f"rails {names} - they are the same curve: largest distance {apart:.3g} mm - more than"
-            f" {limit:.3g} mm is needed - choose two different curves"
+            f"Rails {names} are the same curve: they are at most {apart:.3g} mm apart, more than"
+            f" {limit:.3g} mm is needed. Choose two different curves."
         )
 
 

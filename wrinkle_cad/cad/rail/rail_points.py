@@ -34,8 +34,8 @@ def points_at_arcs(rail: Directrix, arcs: ArrayLike) -> Floats:
     slack = settings.SPAN_SLACK * rail.length
     if len(wanted) and not -slack <= wanted.min() <= wanted.max() <= rail.length + slack:
         raise InputError(
-            f"arc length - {wanted.min():g} to {wanted.max():g} mm - 0 to {rail.length:g} mm, the"
-            " rail's length - correct it"
+            f"Arc lengths from {wanted.min():g} to {wanted.max():g} mm leave the rail, which is"
+            f" {rail.length:g} mm long. Give lengths from 0 to that."
         )
     with kernel_step("measure along a rail"):
         adaptors = [GeomAdaptor_Curve(curve) for curve in rail.curves]

@@ -170,7 +170,9 @@ def _style(role: str, wanted: object, usual: LayerStyle, path: Path) -> LayerSty
     color = given.get("color", usual.color)
     line_type = given.get("line_type", usual.line_type)
     if not isinstance(layer, str) or not _LAYER_NAME.fullmatch(layer):
-        raise _refused(path, f"the {role} layer {layer!r}; a name has 1 to 31 of A-Z a-z 0-9 _ $ -")
+        raise _refused(
+            path, f"the {role} layer {layer!r}; a name has 1 to 31 of A-Z, a-z, 0-9, -, _ and $"
+        )
     if not isinstance(color, int) or isinstance(color, bool) or not 1 <= color <= 255:
         raise _refused(path, f"the {role} color {color!r}; a color is a whole number 1 to 255")
     if not isinstance(line_type, str) or line_type.upper() not in LINE_TYPES:

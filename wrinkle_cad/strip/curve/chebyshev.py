@@ -80,15 +80,15 @@ def evaluate(point_at: PointAt, parameters: FloatArray) -> FloatArray:
     points = np.asarray(point_at(parameters), dtype=np.float64)
     if points.shape != (len(parameters), 3):
         raise InputError(
-            f"curve - {len(parameters)} parameters gave an array of shape {points.shape} - "
-            f"({len(parameters)}, 3) is needed - let point_at take and return whole arrays"
+            f"The curve gave an array of shape {points.shape} for {len(parameters)} parameters, "
+            f"not ({len(parameters)}, 3): let point_at take and return whole arrays."
         )
     finite = np.isfinite(points).all(axis=1)
     if not finite.all():
         where = parameters[int(np.argmin(finite))]
         raise InputError(
-            f"curve - NaN or infinite point at parameter {where:.9g} - coordinates must be "
-            "finite - repair the curve or shorten the interval"
+            f"The curve has a NaN or infinite point at parameter {where:.9g}. Coordinates must be "
+            "finite: repair the curve or shorten the interval."
         )
     return points
 
@@ -131,8 +131,8 @@ def fit_cells(
         count += len(low)
         if count > MOST_CELLS + 2 * len(edges):
             raise InputError(
-                f"curve - still rough after {count} pieces - at most {limit:.3g} mm between the "
-                "curve and its polynomials - repair the curve or raise the tolerance"
+                f"The curve is still rough after {count} pieces: its polynomials must come within "
+                f"{limit:.3g} mm of it. Repair the curve or raise the tolerance."
             )
         middle = 0.5 * (low[open_] + high[open_])
         low = np.concatenate((low[open_], middle))
@@ -162,8 +162,8 @@ def _can_be_halved(
         gap = float(np.max(np.ptp(nodes[cell], axis=0)))
         if gap > 1e3 * limit:
             raise InputError(
-                f"curve - jumps by {gap:.3g} mm at parameter {low[cell]:.9g} - a directrix must "
-                "be continuous - join the edges or sample them one by one"
+                f"The curve jumps by {gap:.3g} mm at parameter {low[cell]:.9g}. A directrix must "
+                "be continuous: join the edges or sample them one by one."
             )
     return wide
 

@@ -48,8 +48,8 @@ def cubic_through(parameters: Floats, points: Floats) -> CubicSpline:
     still = np.flatnonzero(~(np.diff(parameters) > 0.0))
     if len(still):
         raise InputError(
-            f"curve - points {still[0] + 1} and {still[0] + 2} of {len(points)} coincide - a"
-            " smooth curve needs points apart - remove one of them"
+            f"Points {still[0] + 1} and {still[0] + 2} of the {len(points)} of a curve coincide. A"
+            " smooth curve needs points apart: remove one of them."
         )
     knots = np.concatenate(
         (np.repeat(parameters[:1], 4), parameters[2:-2], np.repeat(parameters[-1:], 4))

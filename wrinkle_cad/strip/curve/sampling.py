@@ -115,18 +115,16 @@ def sample_curve(
         if float(largest_gaps(point_at, parameters, points).max()) <= tolerance:
             return Samples(parameters, points)
     raise InputError(
-        f"curve - has features too narrow to follow from parameter {interval[0]:.9g} to "
-        f"{interval[1]:.9g} - chords within {tolerance:.3g} mm could not be confirmed - "
-        "pass the parameters around the feature as breaks"
+        f"The curve has features too narrow to follow from parameter {interval[0]:.9g} to "
+        f"{interval[1]:.9g}: chords within {tolerance:.3g} mm could not be confirmed. Pass the "
+        "parameters around the feature as breaks."
     )
 
 
 def _check_lengths(tolerance: float, max_chord: float | None) -> None:
     for name, length in (("tolerance", tolerance), ("max_chord", max_chord)):
         if length is not None and not (math.isfinite(length) and length > 0):
-            raise InputError(
-                f"{name} - is {length} mm - must be finite and above 0 mm - give a length in mm"
-            )
+            raise InputError(f"{name} cannot be {length} mm: give a finite length above 0 mm.")
 
 
 def _corners(interval: tuple[float, float], breaks: Sequence[float] | FloatArray) -> FloatArray:
@@ -134,25 +132,26 @@ def _corners(interval: tuple[float, float], breaks: Sequence[float] | FloatArray
     start, end = (float(parameter) for parameter in interval)
     if not (math.isfinite(start) and math.isfinite(end) and math.isfinite(end - start)):
         raise InputError(
-            f"interval - runs from {start} to {end} - parameters must be finite - "
-            "give the first and the last parameter"
+            f"The interval runs from {start} to {end}. Parameters must be finite: "
+            "give the first and the last one."
         )
     if not start < end:
         raise InputError(
-            f"interval - runs from {start:.9g} to {end:.9g} - the last parameter must be above "
-            "the first - swap or widen it"
+            f"The interval runs from {start:.9g} to {end:.9g}. Its last parameter must be above "
+            "the first: swap them or widen it."
         )
     inner = np.asarray(breaks, dtype=np.float64)
     if inner.ndim != 1 or not np.isfinite(inner).all():
         raise InputError(
-            f"breaks - an array of shape {inner.shape} with {np.sum(~np.isfinite(inner))} values "
-            "that are not finite - a flat list of finite parameters is needed - clean it"
+            f"breaks cannot be an array of shape {inner.shape} with "
+            f"{np.sum(~np.isfinite(inner))} values that are not finite: give a flat list of "
+            "finite parameters."
         )
     outside = inner[(inner < start) | (inner > end)]
     if len(outside):
         raise InputError(
-            f"breaks - {outside[0]:.9g} lies outside - the interval is {start:.9g} to {end:.9g} - "
-            "leave out breaks that are not on the curve"
+            f"The break {outside[0]:.9g} lies outside the interval from {start:.9g} to {end:.9g}: "
+            "leave out breaks that are not on the curve."
         )
     return np.unique(np.concatenate(([start, end], inner)))
 
@@ -183,9 +182,9 @@ def _place(
     t, x = tabulate(cells.edges, cells.coefficients, sag, spacing, MOST_TABLE_POINTS)
     if t[-1] < corners[-1] or longest < shortest:
         raise InputError(
-            f"curve - {length:.6g} mm long - a tolerance of {tolerance:.3g} mm"
-            + ("" if max_chord is None else f" and chords up to {max_chord:.3g} mm")
-            + " ask for too many vertices - raise them"
+            f"On a curve {length:.6g} mm long, a tolerance of {tolerance:.3g} mm"
+            + (" asks" if max_chord is None else f" and chords up to {max_chord:.3g} mm ask")
+            + f" for too many vertices: raise {'it' if max_chord is None else 'them'}."
         )
     kept = _merged(corners, np.interp(corners, cells.edges, arc), shortest)
     index: IndexArray = np.searchsorted(t, kept).astype(np.int64)
@@ -194,9 +193,9 @@ def _place(
     parameters, failed = place_chords(t, x, cells.edges, cells.coefficients, index, limits)
     if failed >= 0:
         raise InputError(
-            f"curve - from parameter {kept[failed]:.9g} to {kept[failed + 1]:.9g} the tolerance of "
-            f"{tolerance:.3g} mm takes chords shorter than {shortest:.3g} mm - 1e-6 of the "
-            f"curve's {length:.6g} mm is the least - raise the tolerance or remove the tiny edge"
+            f"From parameter {kept[failed]:.9g} to {kept[failed + 1]:.9g} of the curve the "
+            f"tolerance of {tolerance:.3g} mm takes chords shorter than {shortest:.3g} mm, 1e-6 of "
+            f"the curve's {length:.6g} mm. Raise the tolerance or remove the tiny edge."
         )
     return parameters
 
@@ -204,14 +203,14 @@ def _place(
 def _check_size(size: float, length: float, tolerance: float) -> None:
     if length <= 64 * np.finfo(np.float64).eps * size:
         raise InputError(
-            "curve - all its points coincide - a directrix needs a length above 0 mm - "
-            "choose another curve"
+            "All points of the curve coincide. A directrix needs a length above 0 mm: "
+            "choose another curve."
         )
     finest = FINEST_TOLERANCE_PER_SIZE * size
     if tolerance < finest:
         raise InputError(
-            f"tolerance - is {tolerance:.3g} mm - at coordinates up to {size:.6g} mm at least "
-            f"{finest:.3g} mm can be told from round-off - raise it or move the curve to the origin"
+            f"tolerance cannot be {tolerance:.3g} mm: at coordinates up to {size:.6g} mm, less "
+            f"than {finest:.3g} mm is round-off. Raise it or move the curve to the origin."
         )
 
 

@@ -166,9 +166,7 @@ def unroll_cones(
         (18.0, 90.0)
     """
     if not (math.isfinite(tolerance) and tolerance > 0):
-        raise InputError(
-            f"tolerance - is {tolerance} mm - must be finite and above 0 mm - give a length in mm"
-        )
+        raise InputError(f"tolerance cannot be {tolerance} mm: give a finite length above 0 mm.")
     _check_samples("P", p_samples, triangulation.p)
     _check_samples("Q", q_samples, triangulation.q)
     strip = _Chain(triangulation)
@@ -273,14 +271,14 @@ class _Chain:
 def _check_samples(name: str, samples: Samples, points: FloatArray) -> None:
     if samples.points.shape != points.shape:
         raise InputError(
-            f"{name} - {len(samples.points)} samples for {len(points)} points of the strip - they "
-            "must be the same - pass the samples that were triangulated"
+            f"{name} has {len(samples.points)} samples for {len(points)} points of the strip. They "
+            "must be the same: pass the samples that were triangulated."
         )
     gap = float(np.max(np.abs(samples.points - points)))
     if gap > 1e-9 * float(np.max(np.abs(points))):
         raise InputError(
-            f"{name} - samples lie up to {gap:.3g} mm from the strip's points - they must be the "
-            "same - pass the samples that were triangulated"
+            f"The samples of {name} lie up to {gap:.3g} mm from the strip's points. They must be "
+            "the same: pass the samples that were triangulated."
         )
 
 

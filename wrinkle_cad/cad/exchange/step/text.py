@@ -188,22 +188,22 @@ def why_no_shape(text: bytes) -> str:
         text, rb"DOCUMENT_FILE", rb"APPLIED_EXTERNAL_IDENTIFICATION_ASSIGNMENT", rb"EXTERNAL_SOURCE"
     )
     if external:
-        return "no geometry: its parts are external references to other files - open those instead"
+        return "no geometry: its parts are external references to other files. Open those instead"
     tiny = _tiny_edge(text)
     if tiny is not None:
         return tiny
     if entities(text, rb"TESSELLATED_\w+", rb"TRIANGULATED_\w+", rb"COMPLEX_TRIANGULATED_\w+"):
-        return "no exact geometry: only triangles (tessellation) - export as exact B-rep"
+        return "no exact geometry: only triangles (tessellation). Export as exact B-rep"
     schema = re.search(rb"FILE_SCHEMA\s*\(\s*\(\s*'([^' {]*)", text)
     name = schema[1].decode("ascii", "replace").upper() if schema else ""
     if name.startswith("STRUCTURAL_ANALYSIS") or entities(text, rb"FEA_MODEL\w*", rb"NODE"):
-        return "no geometry: an analysis mesh (AP209) - export the CAD model instead"
+        return "no geometry: an analysis mesh (AP209). Export the CAD model instead"
     if name.startswith("IFC"):
-        return "no geometry: a building model (IFC), not a CAD part - export the part as STEP"
+        return "no geometry: a building model (IFC), not a CAD part. Export the part as STEP"
     curves = entities(text, rb"\w*CURVE\w*", rb"LINE", rb"CIRCLE", rb"\w*FACE")
     if curves and not entities(text, rb"\w*SHAPE_REPRESENTATION"):
-        return f"no geometry: {len(curves)} curves and faces belong to no shape - export it again"
-    return "no geometry: no curve, face or solid in it - export the curves and the upper"
+        return f"no geometry: {len(curves)} curves and faces belong to no shape. Export it again"
+    return "no geometry: no curve, face or solid in it. Export the curves and the upper"
 
 
 def _tiny_edge(text: bytes) -> str | None:
@@ -227,7 +227,7 @@ def _tiny_edge(text: bytes) -> str | None:
         if length <= accuracy:
             return (
                 f"damaged: edge #{number} is {length:.2g} {unit} long, shorter than the accuracy"
-                f" of {accuracy:.2g} {unit} that the file declares - remove it or export again"
+                f" of {accuracy:.2g} {unit} that the file declares. Remove it or export again"
             )
     return None
 
