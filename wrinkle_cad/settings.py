@@ -172,8 +172,8 @@ TEXT_HEIGHT: Final = 4.0
 FLAT_FOLD: Final = 1e-7
 """rad; rulings folded by less are neither mountain nor valley."""
 
-NESTING_SECONDS: Final = 10
-"""s that each sheet is searched for a closer layout."""
+NESTING_SECONDS: Final = 0
+"""s that each sheet is searched by the clock for a still closer layout."""
 
 PIECE_GAP: Final = 10.0
 """mm between the pieces of one drawing."""

@@ -73,8 +73,8 @@ class FileSettings:
     nest_seconds: int = field(
         default=settings.NESTING_SECONDS,
         metadata=option(
-            "seconds that each sheet is searched for a closer layout; 0 gives the same layout on"
-            " every machine",
+            "seconds that each sheet is searched further (needs spyrrow); with 0 the layout is the"
+            " same on every machine",
             least=0,
             most=86_400,
             metavar="N",

@@ -86,11 +86,11 @@ class Pattern:
 
         Args:
             sheet: mm, length along the grain and width.
-            seconds: that each sheet is searched for a closer layout; 0 gives the same layout on
-                every machine.
+            seconds: that each sheet is searched further for a closer layout, by the package
+                spyrrow; with 0 the layout is the same on every machine.
 
         Raises:
-            InputError: a piece does not fit on a sheet.
+            InputError: a piece does not fit on a sheet, or spyrrow is not installed.
         """
         from wrinkle_cad.pattern.piece.compacting import compacted
         from wrinkle_cad.pattern.piece.nesting import nested

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 import time
 from collections import Counter
 from dataclasses import replace
@@ -12,6 +13,7 @@ import pytest
 import shapely
 
 from tests.pattern import strips
+from tests.seeds import seeds
 from wrinkle_cad.errors import InputError
 from wrinkle_cad.pattern.check.judging import judge_dxf
 from wrinkle_cad.pattern.formats.dxf import dxf_file, write_dxf
@@ -57,17 +59,62 @@ def check_sheets(sheets, pieces, size, gap=1.5):
 
 def test_twenty_strips_and_bands_fill_two_thirds_of_what_they_use():
     pieces, size = strips_and_bands(20), (600.0, 300.0)
-    began = time.perf_counter()
+    began = time.process_time()
     sheets = nested(pieces, sheet=size)
     check_sheets(sheets, pieces, size)
     assert len(sheets) == 1
-    assert sheets[0].utilisation > 0.6
-    closer = compacted(sheets[0], seconds=8)
+    # 68% in 2 s.
+    assert sheets[0].utilisation >= 0.65
+    assert time.process_time() - began < 60.0
+
+
+def test_a_search_by_the_clock_never_makes_a_sheet_worse():
+    pieces, size = strips_and_bands(6), (600.0, 100.0)
+    (sheet,) = nested(pieces, sheet=size)
+    closer = compacted(sheet, seconds=1)
     check_sheets([closer], pieces, size)
-    assert closer.used_length <= sheets[0].used_length
-    assert closer.utilisation >= 0.65
-    # The search takes 8 s of it.
-    assert time.perf_counter() - began < 120.0
+    assert closer.used_length <= sheet.used_length
+
+
+def test_a_search_by_the_clock_without_its_package_says_how_to_get_it(monkeypatch):
+    monkeypatch.setitem(sys.modules, "spyrrow", None)
+    (sheet,) = nested(strips_and_bands(4), sheet=(600.0, 100.0))
+    with pytest.raises(InputError, match=r"pip install wrinkle-cad\[nesting\]"):
+        compacted(sheet, seconds=1)
+
+
+def test_a_hundred_copies_and_more_come_on_full_sheets():
+    pieces, size = [replace(piece, quantity=18) for piece in strips_and_bands(6)], (600.0, 300.0)
+    sheets = nested(pieces, sheet=size)
+    check_sheets(sheets, pieces, size)
+    assert min(sheet.utilisation for sheet in sheets[:-1]) > 0.6
+
+
+@pytest.mark.parametrize("size", [(123.0, 43.0), (123.0, 5000.0), (50_000.0, 43.0)])
+def test_a_piece_that_just_fits_lies_on_the_sheet(size):
+    """On the last of these sheets a cell is as wide as thirteen gaps."""
+    (piece,) = make_pieces(*strips.rectangle(120.0, 40.0), name="strap")
+    pieces = [replace(piece, quantity=3)]
+    check_sheets(nested(pieces, sheet=size), pieces, size)
+
+
+@pytest.mark.parametrize("seed", seeds(40, 1))
+def test_random_pieces_on_random_sheets_lie_apart_and_inside(seed):
+    random = np.random.default_rng(seed)
+    pieces = [
+        replace(piece, quantity=int(random.integers(1, 5)))
+        for _ in range(int(random.integers(1, 7)))
+        for piece in make_pieces(
+            *strips.random_strip(int(random.integers(1000))),
+            name="s",
+            settings=PieceSettings(grain="across" if random.integers(2) else "along"),
+        )
+    ]
+    needed = max(
+        float(np.ptp(piece.with_grain_along_x().cut_line, axis=0).max()) for piece in pieces
+    )
+    size = tuple((needed + 3.0) * random.uniform(1.0, 6.0, 2))
+    check_sheets(nested(pieces, sheet=size), pieces, size)
 
 
 def test_what_one_sheet_cannot_hold_goes_on_the_next_ones():

@@ -1,7 +1,7 @@
-"""A sheet's pieces moved closer together by a search for some seconds (spyrrow, MIT).
+"""A sheet's pieces moved closer together by a longer search, only on request (spyrrow, MIT).
 
 The search changes places and half turns. It stops by the clock, so a faster machine may find a
-better layout; with 0 s nothing is searched, and layouts are the same everywhere.
+better layout: the one thing in this package whose result depends on the machine.
 """
 
 from __future__ import annotations
@@ -10,6 +10,8 @@ from typing import Final
 
 import numpy as np
 import shapely
+
+from wrinkle_cad.errors import InputError
 
 from .nesting import NESTING_GAP, NestedSheet
 from .piece import PatternPiece, frozen
@@ -26,10 +28,19 @@ def compacted(sheet: NestedSheet, *, seconds: int, gap: float = NESTING_GAP) -> 
         sheet: pieces that fit on it.
         seconds: that the search may take; 0 for none.
         gap: mm between pieces.
+
+    Raises:
+        InputError: there is something to search for, and spyrrow is not installed.
     """
     if seconds <= 0 or len(sheet.pieces) < 2:
         return sheet
-    import spyrrow
+    try:
+        import spyrrow
+    except ImportError as error:
+        raise InputError(
+            "The package spyrrow, which searches for closer layouts, is not installed. Install it "
+            "(pip install wrinkle-cad[nesting]), or nest without a search (0 seconds)."
+        ) from error
 
     outlines = [_outline(piece, gap) for piece in sheet.pieces]
     items = [
