@@ -41,7 +41,7 @@ def whole_job(folder: Path) -> None:
     """Reads, carves, designs, stitches and writes."""
     shapes = {shape.name: shape.shape for shape in read_cad(INPUT).shapes}
     opening = carving.carve(shapes["upper"], shapes["P"], shapes["Q"], margin=4.0)
-    profiles = profile_curves(opening, waves=5, height=3.0, phase=(0.0, 1.047))
+    profiles = profile_curves(opening, waves=5, height=3.0, phase_deg=(0.0, 60.0))
     stitched = stitching.stitch(opening, WrinkleStrip(*profiles, name="wrinkle"))
     write_step(folder / "stitched.step", [Part(stitched.shell_shape, "upper")])
 

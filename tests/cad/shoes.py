@@ -40,7 +40,7 @@ def opening(margin: float = 4.0) -> Opening:
 def wrinkle() -> tuple[WrinkleStrip, Stitched]:
     """One wrinkle of five waves, 3 mm high, with P and Q out of step, stitched into the shoe."""
     strip = WrinkleStrip(
-        *profile_curves(opening(), waves=5, height=3.0, phase=(0.0, 1.0)), name="wrinkle"
+        *profile_curves(opening(), waves=5, height=3.0, phase_deg=(0.0, 57.3)), name="wrinkle"
     )
     return strip, stitch(opening(), strip)
 
@@ -77,7 +77,7 @@ class Variation:
     fade: float
     waves: float
     height: float
-    phase: tuple[float, float]
+    phase_deg: tuple[float, float]
     side: str
 
     def made(self) -> tuple[Opening, WrinkleStrip, Stitched]:
@@ -86,7 +86,7 @@ class Variation:
             carved,
             waves=self.waves,
             height=self.height,
-            phase=self.phase,
+            phase_deg=self.phase_deg,
             fade=self.fade,
             side=self.side,  # type: ignore[arg-type]
         )
@@ -118,6 +118,6 @@ def variation(seed: int) -> Variation:
         fade=random.uniform(0.1, 0.5),
         waves=random.uniform(2.0, 8.0),
         height=height,
-        phase=(random.uniform(0.0, 6.28), random.uniform(0.0, 6.28)),
+        phase_deg=(random.uniform(0.0, 360.0), random.uniform(0.0, 360.0)),
         side=side,
     )

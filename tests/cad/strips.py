@@ -78,7 +78,7 @@ class Strip:
     p_samples: Samples
     q_samples: Samples
 
-    def shell(self, kind: str = "cones", *, is_merged: bool = True) -> TopoDS_Shell:
+    def shell(self, kind: str = "cones") -> TopoDS_Shell:
         return build_shell(
             self.triangulation,
             self.p,
@@ -86,7 +86,6 @@ class Strip:
             self.p_samples,
             self.q_samples,
             kind,
-            is_merged=is_merged,
         )
 
 

@@ -37,38 +37,32 @@ class IrregularFileError(OSError):
         super().__init__(errno.EINVAL, reason, str(path))
 
 
-def read_regular(path: Path, *, size_limit: int, stall_s: float = STALL_S) -> bytes:
+def read_regular(path: Path, *, size_limit: int) -> bytes:
     """Returns the content of a regular file.
 
     Args:
         path: the file; a link to one is followed.
         size_limit: bytes; a larger file is not read.
-        stall_s: seconds without progress after which the file is given up.
 
     Raises:
         IrregularFileError: it is no regular file, larger than the limit, or holds more than it says
             (as some files of ``/proc`` do).
-        TimeoutError: nothing came for so many seconds.
+        TimeoutError: nothing came for ``STALL_S`` seconds.
         OSError: it cannot be opened or read, or its name cannot be one.
     """
     content = bytearray()
-    _take(path, content.extend, size_limit, stall_s)
+    _take(path, content.extend, size_limit)
     return bytes(content)
 
 
-def hash_regular(
-    path: Path,
-    *,
-    size_limit: int = HASHED_SIZE_LIMIT,
-    stall_s: float = STALL_S,
-) -> str:
+def hash_regular(path: Path, *, size_limit: int = HASHED_SIZE_LIMIT) -> str:
     """Returns the SHA-256 of a regular file's content, in hexadecimal.
 
     Raises:
         OSError: as `read_regular` says.
     """
     digest = hashlib.sha256()
-    _take(path, digest.update, size_limit, stall_s)
+    _take(path, digest.update, size_limit)
     return digest.hexdigest()
 
 
@@ -121,7 +115,7 @@ def within(seconds: float, work: Callable[[Callable[[], None]], T], what: str) -
     return results[0]
 
 
-def _take(path: Path, take: Callable[[bytes], Any], size_limit: int, stall_s: float) -> None:
+def _take(path: Path, take: Callable[[bytes], Any], size_limit: int) -> None:
     def work(got_on: Callable[[], None]) -> None:
         with _opened(path, size_limit) as (handle, size):
             left = size + 1
@@ -133,7 +127,7 @@ def _take(path: Path, take: Callable[[bytes], Any], size_limit: int, stall_s: fl
                 raise IrregularFileError(path, "holds more than its size says")
 
     try:
-        within(stall_s, work, f"reading {path.name!r}")
+        within(STALL_S, work, f"reading {path.name!r}")
     except TimeoutError as error:
         raise TimeoutError(errno.ETIMEDOUT, error.strerror, str(path)) from error
     except BlockingIOError as error:

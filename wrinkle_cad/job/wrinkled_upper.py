@@ -171,12 +171,11 @@ def _profiles(job: Job, opening: Opening, given: StripInput) -> tuple[object, ob
         return given.p.shape, given.q.shape
     from wrinkle_cad.cad.upper.profiles import profile_curves
 
-    p_phase, q_phase = job.phase_deg
     return profile_curves(
         opening,
         waves=job.waves,
         height=job.height,
-        phase=(math.radians(p_phase), math.radians(q_phase)),
+        phase_deg=job.phase_deg,
         fade=job.fade,
         side=job.side,
     )

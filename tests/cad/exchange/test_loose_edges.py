@@ -56,7 +56,7 @@ def test_where_three_meet_all_end() -> None:
 def test_a_gap_is_bridged_up_to_its_limit_only() -> None:
     for start, count in ((1.0009, 1), (1.0011, 2)):
         edges = [line((0.0, 0.0, 0.0), (1.0, 0.0, 0.0)), line((start, 0.0, 0.0), (2.0, 0.0, 0.0))]
-        assert len(chain_edges(edges, gap=1e-3)) == count
+        assert len(chain_edges(edges)) == count
 
 
 def test_no_edges_make_no_chains() -> None:

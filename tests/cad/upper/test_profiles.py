@@ -35,7 +35,9 @@ def profile_points(profile: Directrix, rail: object) -> np.ndarray:
 
 
 def test_a_profile_starts_and_ends_on_its_rail_and_is_one_smooth_curve() -> None:
-    for i, profile in enumerate(profile_curves(opening(), waves=5, height=3.0, phase=(0.3, 1.0))):
+    for i, profile in enumerate(
+        profile_curves(opening(), waves=5, height=3.0, phase_deg=(17.0, 57.0))
+    ):
         assert len(profile.curves) == 1
         assert profile.breaks == ()
         ends = profile.point_at(np.array(profile.interval))
@@ -99,8 +101,16 @@ def test_the_public_profiles_are_build123d_edges() -> None:
     assert isinstance(p, build123d.Edge)
     assert isinstance(q, build123d.Edge)
     assert (p.label, q.label) == ("P", "Q")
-    inner, _ = profile_curves(opening(), waves=5, height=3.0)
-    assert p.length == pytest.approx(inner.length, rel=1e-9)
+    plain, _ = profile_curves(opening(), waves=5, height=3.0)
+    assert p.length == pytest.approx(plain.length, rel=1e-9)
+    shifted, _ = wrinkle_profiles(
+        opening(), waves=5, height=3.0, phase_deg=(40.0, 0.0), fade=0.3, side="both", across=1.0
+    )
+    curve, _ = profile_curves(
+        opening(), waves=5, height=3.0, phase_deg=40.0, fade=0.3, side="both", across=1.0
+    )
+    assert shifted.length == pytest.approx(curve.length, rel=1e-9)
+    assert abs(shifted.length - p.length) > 0.1
 
 
 @pytest.mark.parametrize(
@@ -111,7 +121,7 @@ def test_the_public_profiles_are_build123d_edges() -> None:
         ({"waves": 5, "height": np.nan}, "height is nan"),
         ({"waves": 5, "height": 1.0, "fade": 0.6}, "fade is 0.6"),
         ({"waves": 5, "height": 1.0, "side": "up"}, "side is 'up'"),
-        ({"waves": 5, "height": 1.0, "phase": np.inf}, "phase is inf"),
+        ({"waves": 5, "height": 1.0, "phase_deg": np.inf}, "phase_deg is inf"),
         ({"waves": 5, "height": lambda arc: arc[:-1]}, "callable height returned shape"),
         ({"waves": 5, "height": lambda arc: arc * np.nan}, "values not finite"),
     ],

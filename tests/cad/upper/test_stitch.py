@@ -58,7 +58,7 @@ from wrinkle_cad.wrinkle.wrinkle_strip import WrinkleStrip
 
 
 def stitched(carved: Opening, **waves: object) -> Stitched:
-    options: dict[str, object] = {"waves": 5, "height": 3.0, "phase": (0.0, 1.0), **waves}
+    options: dict[str, object] = {"waves": 5, "height": 3.0, "phase_deg": (0.0, 57.3), **waves}
     profiles = profile_curves(carved, **options)  # type: ignore[arg-type]
     return stitch(carved, WrinkleStrip(*profiles, name="wrinkle"))
 

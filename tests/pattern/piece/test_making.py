@@ -10,6 +10,7 @@ from wrinkle_cad.errors import InputError
 from wrinkle_cad.pattern.piece.making import make_pieces
 from wrinkle_cad.pattern.piece.options import SIDES, NotchRule, PieceSettings
 from wrinkle_cad.pattern.piece.stacking import laid_out
+from wrinkle_cad.settings import PIECE_GAP
 
 
 def test_a_piece_stands_in_the_fixed_frame():
@@ -168,14 +169,14 @@ def test_laid_out_pieces_keep_apart_and_start_at_the_origin():
         for seed in range(8)
         for piece in make_pieces(*strips.random_strip(seed), name=f"s{seed}", settings=settings)
     ]
-    placed = laid_out(pieces, gap=7.0)
+    placed = laid_out(pieces)
     regions = [shapely.Polygon(piece.cut_line) for piece in placed]
     assert np.min([region.bounds[:2] for region in regions], axis=0) == pytest.approx((0.0, 0.0))
     for i, region in enumerate(regions):
         assert region.area == pytest.approx(shapely.Polygon(pieces[i].cut_line).area)
         for other in regions[:i]:
-            assert region.distance(other) >= 7.0 - 1e-9
-    again = laid_out(placed, gap=7.0)
+            assert region.distance(other) >= PIECE_GAP - 1e-9
+    again = laid_out(placed)
     assert all(np.allclose(a.cut_line, b.cut_line) for a, b in zip(placed, again, strict=True))
 
 

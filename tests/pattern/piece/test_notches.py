@@ -34,18 +34,18 @@ def test_given_positions_are_kept():
 @pytest.mark.parametrize("at", [1.0, 99.0, 52.0, 120.0])
 def test_a_given_position_on_a_corner_or_off_the_rail_is_refused(at):
     with pytest.raises(InputError, match="from a corner or end"):
-        notch_arcs(100.0, NotchRule(at=(at,)), corners=(50.0,), clearance=3.0)
+        notch_arcs(100.0, NotchRule(at=(at,)), corners=(50.0,))
 
 
 def test_automatic_notches_move_away_from_corners():
-    arcs = notch_arcs(100.0, NotchRule(count=3), corners=(50.0, 51.0, 76.0), clearance=4.0)
-    assert arcs.tolist() == [25.0, 46.0, 72.0]
-    assert len(notch_arcs(5.0, NotchRule(count=2), clearance=3.0)) == 0
+    arcs = notch_arcs(100.0, NotchRule(count=3), corners=(50.0, 51.0, 76.0))
+    assert arcs.tolist() == [25.0, 47.0, 73.0]
+    assert len(notch_arcs(5.0, NotchRule(count=2))) == 0
 
 
 def test_notches_never_crowd():
     corners = (40.0, 41.0, 42.0, 43.0, 44.0)
-    arcs = notch_arcs(100.0, NotchRule(count=24), corners=corners, clearance=3.0)
+    arcs = notch_arcs(100.0, NotchRule(count=24), corners=corners)
     assert np.diff(arcs).min() >= 2.0
     assert 20 <= len(arcs) < 24
     assert np.abs(arcs[:, None] - corners).min() >= 3.0 - 1e-12

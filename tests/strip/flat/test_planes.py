@@ -124,15 +124,6 @@ def test_triangles_that_lie_on_each_other_are_not_one_run() -> None:
     assert runs[0] != runs[1]
 
 
-def test_without_merging_each_flat_step_is_a_run() -> None:
-    triangulation, curves, samples = strip_between(wave(0.0, 6.0, 11.0), wave(25.0, 8.0, 9.0))
-    parameters = samples[0].parameters, samples[1].parameters
-    cells = exact_rails(curves, samples)
-    runs = planar_runs(triangulation, cells, parameters, GAP, is_merged=False)
-    assert len(spans_of(runs)) == np.count_nonzero(runs >= 0)
-    assert np.count_nonzero(runs >= 0) > 0.9 * len(runs)
-
-
 def test_a_bank_may_turn_back_where_the_strip_is_flat() -> None:
     p_at = rail(lambda t: 100.0 * t, lambda t: 0.4 * np.sin(30.0 * t), constant(0.0))
     q_at = rail(lambda t: 100.0 * t, constant(8.0), constant(0.0))

@@ -22,20 +22,17 @@ from wrinkle_cad.cad.kernel.topology import vertex_point
 _NEIGHBOURS: Final = np.array(list(product((-1.0, 0.0, 1.0), repeat=3)))
 
 
-def chain_edges(
-    edges: Sequence[TopoDS_Edge], *, gap: float = settings.RAIL_GAP
-) -> list[TopoDS_Shape]:
-    """Joins edges end to end where exactly two of them meet.
+def chain_edges(edges: Sequence[TopoDS_Edge]) -> list[TopoDS_Shape]:
+    """Joins edges end to end where exactly two of them meet, within ``settings.RAIL_GAP``.
 
     Args:
         edges: in any order and direction.
-        gap: mm; ends this near are one point.
 
     Returns:
         Wires, and edges that meet no other, in the order of their first edges. Where three or
         more edges meet, all of them end.
     """
-    nodes = _nodes(edges, gap)
+    nodes = _nodes(edges, settings.RAIL_GAP)
     at_node: dict[int, list[int]] = defaultdict(list)
     for i, ends in enumerate(nodes):
         for node in ends:

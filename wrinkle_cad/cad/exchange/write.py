@@ -195,7 +195,6 @@ def write_stl(
     shape: TopoDS_Shape,
     *,
     tolerance: float = settings.TOLERANCE,
-    angular_tolerance: float = settings.MESH_ANGLE,
 ) -> None:
     """Writes the triangles of a shape as a binary STL file, in mm.
 
@@ -203,14 +202,13 @@ def write_stl(
         path: the file; it is replaced as a whole.
         shape: anything with faces; triangles that it already carries are not used.
         tolerance: mm; how far a triangle may lie from its face.
-        angular_tolerance: rad; how far neighbouring normals may differ on one face.
 
     Raises:
         ExportError: there are no faces, the kernel cannot mesh them, or the file cannot be written;
             what stood there before is untouched.
     """
     try:
-        content = stl_bytes(shape, tolerance=tolerance, angular_tolerance=angular_tolerance)
+        content = stl_bytes(shape, tolerance=tolerance)
         write_atomically(path, content)
     except CadError as error:
         raise ExportError(path, "STL", error.message) from error
@@ -218,12 +216,7 @@ def write_stl(
         raise _disk_error(path, "STL", error) from error
 
 
-def stl_bytes(
-    shape: TopoDS_Shape,
-    *,
-    tolerance: float = settings.TOLERANCE,
-    angular_tolerance: float = settings.MESH_ANGLE,
-) -> bytes:
+def stl_bytes(shape: TopoDS_Shape, *, tolerance: float = settings.TOLERANCE) -> bytes:
     """Returns the content of a binary STL file; see ``write_stl``.
 
     Raises:
@@ -233,9 +226,7 @@ def stl_bytes(
         raise CadError("mesh the shape", "it has no faces. Pass a face, shell or solid.")
     silence_kernel()
     for share in (1.0, *_OTHER_MESHES):
-        points, triangles = mesh_of(
-            shape, tolerance=share * tolerance, angular_tolerance=angular_tolerance
-        )
+        points, triangles = mesh_of(shape, tolerance=share * tolerance)
         triangles = without_doubled(points, triangles)
         if not shares_edges_thrice(points, triangles):
             break

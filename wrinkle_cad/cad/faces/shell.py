@@ -48,8 +48,6 @@ def build_shell(
     p_samples: Samples,
     q_samples: Samples,
     kind: str = settings.SURFACE,
-    *,
-    is_merged: bool = True,
 ) -> TopoDS_Shell:
     """Returns the shell of a strip, valid by the kernel's own check.
 
@@ -60,8 +58,6 @@ def build_shell(
         p_samples: vertices on P, with m points.
         q_samples: vertices on Q, with n points.
         kind: "cones" or "facets".
-        is_merged: for cones, whether neighbouring steps with one apex make one face; if not,
-            every sample that bounds a triangle is a vertex.
 
     Raises:
         InputError: an unknown kind, or samples that are not those of the triangulation.
@@ -78,14 +74,12 @@ def build_shell(
     if has_curves:
         cells = exact_rails((p.point_at, q.point_at), samples)
         parameters = p_samples.parameters, q_samples.parameters
-        runs = planar_runs(
-            triangulation, cells, parameters, settings.PLANE_GAP, is_merged=is_merged
-        )
+        runs = planar_runs(triangulation, cells, parameters, settings.PLANE_GAP)
     with kernel_step("make the faces of a strip"):
         thin = thin_triangles(triangulation, skeleton.limit)
         spans = [_trimmed(triangulation, skeleton, thin, *span) for span in spans_of(runs)]
         parts = [flat_part(triangulation, corners, *span) for span in spans if span[0] < span[1]]
-        fans = fans_of(triangulation, corners, thin, runs >= 0, is_merged=is_merged and has_curves)
+        fans = fans_of(triangulation, corners, thin, runs >= 0, is_merged=has_curves)
         kept = [fan for fan in fans if not (fan.is_thin and skeleton.leave_out(fan))]
         faces = _faces_in_order(parts, kept, skeleton)
     if not faces:

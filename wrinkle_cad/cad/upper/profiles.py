@@ -82,7 +82,7 @@ def wrinkle_profiles(
         opening,
         waves=waves,
         height=height,
-        phase=(math.radians(_one(phase_deg, 0)), math.radians(_one(phase_deg, 1))),
+        phase_deg=phase_deg,
         fade=fade,
         side=side,
         across=across,
@@ -95,7 +95,7 @@ def profile_curves(
     *,
     waves: Pair,
     height: Shift,
-    phase: Pair = 0.0,
+    phase_deg: Pair = settings.WAVE_PHASES_DEG,
     fade: float = settings.FADE,
     side: settings.WaveSide = settings.WAVE_SIDE,
     across: Shift = 0.0,
@@ -107,7 +107,9 @@ def profile_curves(
         raise InputError(f"side is {side!r}. Choose out, in or both.")
     made = []
     for i, (rail, name) in enumerate(zip(opening.rails, "PQ", strict=True)):
-        shape = _wave_shape(rail, _one(waves, i), _one(phase, i), fade, side, name)
+        shape = _wave_shape(
+            rail, _one(waves, i), math.radians(_one(phase_deg, i)), fade, side, name
+        )
         outward = _offset(rail, _one(height, i), shape, "height")
         sideways = _offset(rail, _one(across, i), shape, "across")
         points = (
@@ -133,7 +135,7 @@ def _wave_shape(
             f"waves is {waves:g} on {name}: more than 0 and up to {most:.0f} are allowed."
         )
     if not np.isfinite(phase):
-        raise InputError(f"phase is {phase:g} on {name}. Give a finite angle.")
+        raise InputError(f"phase_deg is {math.degrees(phase):g} on {name}. Give a finite angle.")
     angle = 2.0 * np.pi * waves * rail.shares + phase
     near = np.minimum(rail.shares, 1.0 - rail.shares)
     # A squared sine: at the ends it grows slower than the margin, so the band does not stand up.

@@ -130,15 +130,12 @@ def write_dxf(
     version: DxfVersion | None = None,
     curves: Curves = "lines",
     test_square: bool = False,
-    style: str | None = None,
     timestamp: datetime | None = None,
     is_laid: bool = False,
 ) -> tuple[Finding, ...]:
     """Writes a DXF file, whole or not at all, and returns the findings of ``dxf_file``.
 
-    The style is named after the file where none is given.
-
-    The other arguments are those of ``dxf_file``.
+    The style is named after the file; the other arguments are those of ``dxf_file``.
 
     Raises:
         InputError: as ``dxf_file``.
@@ -150,7 +147,7 @@ def write_dxf(
         version=version,
         curves=curves,
         test_square=test_square,
-        style=path.stem if style is None else style,
+        style=path.stem,
         timestamp=timestamp,
         is_laid=is_laid,
     )

@@ -30,6 +30,7 @@ from .plain_text import ascii_text, text_changed
 from .svg import color_of
 
 _BAR: Final = 50.0
+_OVERVIEW_GAP: Final = 4.0
 _INCH: Final = 25.4
 _POINTS_PER_MM: Final = 72.0 / _INCH
 _PENS: Final[Mapping[Role, tuple[float, tuple[float, ...], str]]] = MappingProxyType(
@@ -156,7 +157,7 @@ def _draw_page(
             axes.plot(x, y, marker="+", markersize=OVERLAP * _POINTS_PER_MM, color="0.4", lw=0.3)
 
 
-def _draw_lines(axes: Any, drawing: Drawing, profile: Profile, scale: float = 1.0) -> None:
+def _draw_lines(axes: Any, drawing: Drawing, profile: Profile) -> None:
     for stroke in drawing.strokes:
         style = profile.styles.get(stroke.role)
         if style is None:
@@ -167,7 +168,7 @@ def _draw_lines(axes: Any, drawing: Drawing, profile: Profile, scale: float = 1.
         axes.plot(
             *points.T,
             color=color_of(style),
-            linewidth=width * scale,
+            linewidth=width,
             linestyle=_pattern(width, dashes),
         )
     for spot in drawing.spots:
@@ -229,9 +230,7 @@ def _draw_overview(figure: Any, groups: Sequence[Group], profile: Profile) -> No
             inset.text(*middle, told, fontsize=7, ha="center", va="center", color="0.3")
 
 
-def _overview_places(
-    groups: Sequence[Group], room: Floats, gap: float = 4.0
-) -> tuple[list[Floats], float]:
+def _overview_places(groups: Sequence[Group], room: Floats) -> tuple[list[Floats], float]:
     """Returns lower left corners (2,) mm of the groups in shelves, and the scale that fits."""
     scale = 0.5
     while True:
@@ -239,9 +238,9 @@ def _overview_places(
         for group in groups:
             width, height = scale * group.size
             if left > 0.0 and left + width > room[0]:
-                left, bottom, shelf = 0.0, bottom + shelf + gap, 0.0
+                left, bottom, shelf = 0.0, bottom + shelf + _OVERVIEW_GAP, 0.0
             places.append(np.array((left, bottom)))
-            left, shelf = left + width + gap, max(shelf, height)
+            left, shelf = left + width + _OVERVIEW_GAP, max(shelf, height)
             if width > room[0] or bottom + height > room[1]:
                 break
         else:

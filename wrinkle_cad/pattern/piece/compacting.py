@@ -21,13 +21,12 @@ _SIMPLER: Final = 0.1
 """mm; outlines are simplified by this much, and widened as much, before they are compared."""
 
 
-def compacted(sheet: NestedSheet, *, seconds: int, gap: float = NESTING_GAP) -> NestedSheet:
+def compacted(sheet: NestedSheet, *, seconds: int) -> NestedSheet:
     """Returns the sheet with a shorter used length if one is found, else as it is.
 
     Args:
         sheet: pieces that fit on it.
         seconds: that the search may take; 0 for none.
-        gap: mm between pieces.
 
     Raises:
         InputError: there is something to search for, and spyrrow is not installed.
@@ -42,7 +41,7 @@ def compacted(sheet: NestedSheet, *, seconds: int, gap: float = NESTING_GAP) -> 
             "(pip install wrinkle-cad[nesting]), or nest without a search (0 seconds)."
         ) from error
 
-    outlines = [_outline(piece, gap) for piece in sheet.pieces]
+    outlines = [_outline(piece) for piece in sheet.pieces]
     items = [
         spyrrow.Item(str(i), list(outline.exterior.coords)[:-1], 1, [0.0, 180.0])
         for i, outline in enumerate(outlines)
@@ -57,20 +56,20 @@ def compacted(sheet: NestedSheet, *, seconds: int, gap: float = NESTING_GAP) -> 
         turned = pieces[i].turned_round() if abs(placed.rotation) > 90.0 else pieces[i]
         pieces[i] = turned.moved(frozen(placed.translation))
     made = NestedSheet(tuple(pieces), sheet.index, sheet.size)
-    return made if _is_better(made, sheet, gap) else sheet
+    return made if _is_better(made, sheet) else sheet
 
 
-def _outline(piece: PatternPiece, gap: float) -> shapely.Polygon:
+def _outline(piece: PatternPiece) -> shapely.Polygon:
     outline = shapely.Polygon(piece.cut_line).simplify(_SIMPLER)
-    widened: shapely.Polygon = outline.buffer(0.5 * gap + _SIMPLER, join_style="mitre")
+    widened: shapely.Polygon = outline.buffer(0.5 * NESTING_GAP + _SIMPLER, join_style="mitre")
     return shapely.Polygon(widened.exterior)
 
 
-def _is_better(made: NestedSheet, before: NestedSheet, gap: float) -> bool:
+def _is_better(made: NestedSheet, before: NestedSheet) -> bool:
     """Whether a layout is shorter, on the sheet and without pieces nearer than half the gap."""
     corners = np.vstack([piece.cut_line for piece in made.pieces])
     if corners.min() < 0.0 or np.any(corners.max(axis=0) > made.size):
         return False
     regions = [shapely.Polygon(piece.cut_line) for piece in made.pieces]
-    near = shapely.STRtree(regions).query(regions, predicate="dwithin", distance=0.5 * gap)
+    near = shapely.STRtree(regions).query(regions, predicate="dwithin", distance=0.5 * NESTING_GAP)
     return bool(np.all(near[0] == near[1])) and made.used_length < before.used_length

@@ -71,28 +71,26 @@ class NestedSheet:
 
 
 def nested(
-    pieces: Sequence[PatternPiece],
-    *,
-    sheet: tuple[float, float],
-    gap: float = NESTING_GAP,
+    pieces: Sequence[PatternPiece], *, sheet: tuple[float, float]
 ) -> tuple[NestedSheet, ...]:
     """Returns sheets that hold all pieces, each once for every copy that is wanted of it.
+
+    Pieces keep ``NESTING_GAP`` from each other, and half of it from the sheet's edge.
 
     Args:
         pieces: at least one; ``quantity`` copies of each are laid.
         sheet: mm, length along the grain, which is laid along x, and width.
-        gap: mm between pieces, and to the sheet's edge half of it.
 
     Raises:
         InputError: a piece is larger than a sheet.
     """
     for piece in pieces:
-        check_fits(piece, sheet, gap=gap)
+        check_fits(piece, sheet)
     pieces = [piece.with_grain_along_x() for piece in pieces]
     index = [i for i, piece in enumerate(pieces) for _ in range(piece.quantity)]
-    length = _expected_length([pieces[i] for i in index], sheet, gap)
+    length = _expected_length([pieces[i] for i in index], sheet)
     while True:
-        grid = _Grid((length, sheet[1]), gap)
+        grid = _Grid((length, sheet[1]))
         shapes = [grid.shape_of(i, piece) for i, piece in enumerate(pieces)]
         start = _laid_by_size([shapes[i] for i in index], grid)
         if length >= sheet[0] or start.worth[0] == 0:
@@ -110,29 +108,24 @@ def nested(
     )
 
 
-def check_fits(
-    piece: PatternPiece, sheet: tuple[float, float], *, gap: float = NESTING_GAP
-) -> None:
+def check_fits(piece: PatternPiece, sheet: tuple[float, float]) -> None:
     """Raises an ``InputError`` if a piece is larger than a sheet.
 
     Args:
         piece: its grain line comes to lie along the sheet.
         sheet: mm, length along the grain and width.
-        gap: mm, half of it on each side of the piece.
     """
     outline = piece.with_grain_along_x().cut_line
     width, height = np.ptp(outline, axis=0)
-    if width + gap > sheet[0] or height + gap > sheet[1]:
+    if width + NESTING_GAP > sheet[0] or height + NESTING_GAP > sheet[1]:
         raise InputError(
             f"{piece.name} is {width:.1f} x {height:.1f} mm and does not fit on a sheet of "
             f"{sheet[0]:g} x {sheet[1]:g} mm. Take a larger sheet, or split the strip."
         )
 
 
-def _expected_length(
-    pieces: Sequence[PatternPiece], sheet: tuple[float, float], gap: float
-) -> float:
-    sizes = np.array([np.ptp(piece.cut_line, axis=0) + gap for piece in pieces])
+def _expected_length(pieces: Sequence[PatternPiece], sheet: tuple[float, float]) -> float:
+    sizes = np.array([np.ptp(piece.cut_line, axis=0) + NESTING_GAP for piece in pieces])
     area = math.fsum(shapely.Polygon(piece.cut_line).area for piece in pieces)
     expected = float(sizes[:, 0].max()) + area / (_EXPECTED * sheet[1])
     return min(sheet[0], expected, math.fsum(sizes[:, 0].tolist()))
@@ -173,14 +166,13 @@ class _Layout:
 
 
 class _Grid:
-    def __init__(self, sheet: tuple[float, float], gap: float) -> None:
+    def __init__(self, sheet: tuple[float, float]) -> None:
         self.cell = max(_FINEST, max(sheet) / _CELLS)
         self.columns, self.rows = (math.floor(side / self.cell + 1e-9) for side in sheet)
-        self._gap = gap
 
     def shape_of(self, index: int, piece: PatternPiece) -> _Shape:
-        here = piece.moved(frozen(0.5 * self._gap - piece.cut_line.min(axis=0)))
-        taken = taken_cells(here.cut_line, cell=self.cell, gap=self._gap)
+        here = piece.moved(frozen(0.5 * NESTING_GAP - piece.cut_line.min(axis=0)))
+        taken = taken_cells(here.cut_line, cell=self.cell, gap=NESTING_GAP)
         # A piece that fills the sheet to a part of a cell has room all the same.
         taken = taken[: self.rows, : self.columns]
         rows, columns = taken.shape
@@ -191,7 +183,7 @@ class _Grid:
         piece, shape = laid.shape.piece, laid.shape
         if laid.is_turned:
             # A piece whose cells were more than the sheet has keeps its half gap from the edges.
-            size = np.ptp(piece.cut_line, axis=0) + self._gap
+            size = np.ptp(piece.cut_line, axis=0) + NESTING_GAP
             corner = np.maximum(self.cell * np.array((shape.columns, shape.rows)), size)
             piece = piece.turned_round().moved(frozen(corner))
         return piece.moved(frozen(self.cell * np.array((laid.column, laid.row))))

@@ -23,22 +23,22 @@ def notch_arcs(
     rule: NotchRule,
     *,
     corners: Sequence[float] = (),
-    clearance: float = settings.NOTCH_CLEARANCE,
 ) -> Floats:
     """Returns the arc lengths of the notches on a rail, (k,) mm from its start, ascending.
 
-    Counted and spaced notches that would stand too near a corner move to the nearest place with
-    room; those that would crowd another there are left out, so fewer may come back.
+    Counted and spaced notches nearer to a corner than ``settings.NOTCH_CLEARANCE`` move to the
+    nearest place with room; those that would crowd another there are left out, so fewer may come
+    back.
 
     Args:
         length: mm, of the rail in space.
         rule: how many, how far apart, or where.
         corners: mm; arc lengths of corners between the ends, which are corners themselves.
-        clearance: mm; least distance from a corner.
 
     Raises:
         InputError: a position given by the user lies on a corner or off the rail.
     """
+    clearance = settings.NOTCH_CLEARANCE
     stops = np.unique(np.concatenate(([0.0], np.asarray(corners, dtype=np.float64), [length])))
     if rule.at:
         arcs = np.unique(np.array(rule.at, dtype=np.float64))

@@ -16,17 +16,15 @@ Reach = Callable[[PatternPiece], Floats]
 def laid_out(
     pieces: Sequence[PatternPiece],
     *,
-    gap: float = settings.PIECE_GAP,
     reach: Reach | None = None,
 ) -> tuple[PatternPiece, ...]:
     """Returns the pieces shifted, never turned or scaled, one above the other.
 
     The lower left corner of the first cut line's box comes to the origin, so that no machine
-    meets a negative coordinate; every next box starts ``gap`` mm above the one before.
+    meets a negative coordinate; every next box starts ``settings.PIECE_GAP`` above the one before.
 
     Args:
         pieces: any number.
-        gap: mm.
         reach: more points, (k, 2) mm, that the box of a piece must hold: its texts.
     """
     placed: list[PatternPiece] = []
@@ -39,5 +37,5 @@ def laid_out(
             # Texts beside the first piece may lie lower than itself.
             height = min(0.0, bottom - float(low[1]))
         placed.append(piece.moved(frozen(np.array((-low[0], height - bottom)))))
-        height += top - bottom + gap
+        height += top - bottom + settings.PIECE_GAP
     return tuple(placed)

@@ -27,8 +27,6 @@ def planar_runs(
     cells: tuple[Cells | None, Cells | None],
     parameters: tuple[Floats, Floats],
     gap: float,
-    *,
-    is_merged: bool = True,
 ) -> Indices:
     """Returns the plane that each step lies in.
 
@@ -40,14 +38,13 @@ def planar_runs(
         cells: the curves of P and Q; None for a rail that is a point.
         parameters: (m,) and (n,) float64; of the samples of P and of Q.
         gap: mm; how far a curve may lie from its plane.
-        is_merged: whether steps are merged; if not, each is a run of its own.
 
     Returns:
         (m+n-2,) int64; the number of a step's run, counted along the strip; -1 where the bank curve
         and its apex lie in no plane.
     """
     sectors = _Sectors(triangulation, cells, parameters)
-    joined = sectors.are_coplanar(gap) & is_merged
+    joined = sectors.are_coplanar(gap)
     firsts = np.concatenate(([0], np.flatnonzero(~joined) + 1, [sectors.count]))
     runs = np.full(sectors.count, -1, dtype=np.int64)
     number = 0
