@@ -107,3 +107,26 @@ def test_a_folder_that_cannot_be_made_is_named(tmp_path: Path, job: Job) -> None
     blocked = Job(input=job.input, output_dir=tmp_path / "file" / "out")
     with pytest.raises(ExportError, match="out"), outputs_together(blocked, KINDS):
         pass
+
+
+def test_what_an_earlier_run_made_and_this_one_does_not_goes_unless_it_was_changed(
+    tmp_path: Path,
+) -> None:
+    job = Job(input=tmp_path / "in.step", output_dir=tmp_path / "out", name="a")
+
+    def write(*kinds: str) -> None:
+        with outputs_together(job, (*kinds, "json")) as paths:
+            for kind in kinds:
+                paths[kind].write_text(f"{kind} of ours")
+            listed = {
+                "schema": "wrinkle_cad/job",
+                "outputs": hashes_of({k: paths[k] for k in kinds}),
+            }
+            paths["json"].write_text(json.dumps(listed))
+
+    write("dxf", "sheet1.dxf", "sheet2.dxf", "sheet3.dxf")
+    (job.output_dir / "a.sheet3.dxf").write_text("marked by hand")
+    (job.output_dir / "a.sheet4.dxf").write_text("somebody else's")
+    write("dxf", "sheet1.dxf")
+    names = sorted(path.name for path in job.output_dir.iterdir())
+    assert names == ["a.dxf", "a.json", "a.sheet1.dxf", "a.sheet3.dxf", "a.sheet4.dxf"]

@@ -29,6 +29,7 @@ from wrinkle_cad.batch.folder.events import (
 )
 from wrinkle_cad.batch.folder.index_page import PAGE_NAME
 from wrinkle_cad.batch.folder.summary_table import TABLE_NAME
+from wrinkle_cad.files.names import printable
 
 
 @contextmanager
@@ -74,6 +75,8 @@ def print_summary(summary: BatchSummary, console: Console | None = None) -> None
     table.add_row("seconds", f"{summary.seconds:.1f}")
     table.add_row("files per minute", f"{rate:.1f}")
     screen.print(table)
+    if summary.sheets:
+        screen.print(Text(printable(summary.sheets)))
     for name in (TABLE_NAME, PAGE_NAME):
         screen.print(Text(str(summary.folder / name)))
 

@@ -120,7 +120,7 @@ def _convert(given: argparse.Namespace, planned: tuple[PlannedJob, ...], folder:
         )
         return INTERRUPTED
     _show_summary(given, summary)
-    is_bad = summary.failed or summary.left
+    is_bad = summary.failed or summary.left or summary.sheet_failures
     return FAILED if is_bad or summary.strict_misses else DONE
 
 
@@ -218,6 +218,8 @@ def _show_summary(given: argparse.Namespace, summary: BatchSummary) -> None:
         from .batch_display import print_summary
 
         print_summary(summary)
+    for failure in summary.sheet_failures:
+        _say(sys.stderr, f"wrinkle-cad: {failure}")
     if summary.stopped_by:
         _say(sys.stderr, f"wrinkle-cad: {summary.stopped_by}")
 

@@ -80,6 +80,12 @@ class FileSettings:
             metavar="N",
         ),
     )
+    pieces_file: bool = field(
+        default=False,
+        metadata=option(
+            "write the pieces as they are, NAME.pieces, for nesting those of many files", flag=None
+        ),
+    )
     step_schema: settings.StepSchema = field(
         default=settings.STEP_SCHEMA, metadata=option("schema of the STEP file")
     )

@@ -76,7 +76,9 @@ def hashes_of(paths: Mapping[str, Path]) -> dict[str, dict[str, Any]]:
 def outputs_together(job: Job, kinds: tuple[str, ...]) -> Iterator[dict[str, Path]]:
     """Yields paths to write to; on a clean exit the files appear under their final names.
 
-    The paths lie in a hidden folder inside the output folder, so the last step is a rename.
+    The paths lie in a hidden folder inside the output folder, so the last step is a rename. What an
+    earlier run wrote under the same stem and this one does not make is removed, if it is as it was
+    written: nobody should cut by it.
 
     Raises:
         ExportError: the output folder cannot be written; nothing was changed.
@@ -91,9 +93,10 @@ def outputs_together(job: Job, kinds: tuple[str, ...]) -> Iterator[dict[str, Pat
         yield written
         finals = output_paths(job, kinds)
         pairs = [(written[kind], finals[kind]) for kind in kinds]
+        is_ours, stale = ownership_of(job.output_dir, job.name), _no_longer_made(job, finals)
         try:
             # Asked again: a file may have appeared while the job ran.
-            replace_together(pairs, may_replace=ownership_of(job.output_dir, job.name))
+            replace_together(pairs, may_replace=is_ours)
         except FileExistsError as error:
             name = Path(error.filename2 or error.filename).name
             raise ExportError(
@@ -102,8 +105,22 @@ def outputs_together(job: Job, kinds: tuple[str, ...]) -> Iterator[dict[str, Pat
                 "a file of somebody else got that name meanwhile. It is kept, nothing was written."
                 " Move it away, or give another -o DIR.",
             ) from error
+        for path in stale:
+            if is_ours(path):
+                path.unlink(missing_ok=True)
     finally:
         discard_staging(aside)
+
+
+def _no_longer_made(job: Job, finals: Mapping[str, Path]) -> list[Path]:
+    """The outputs that the JSON of an earlier run lists beside those that are made now."""
+    listed = _listed_outputs(job.output_dir / f"{job.name}.json")
+    current = {path.name for path in finals.values()}
+    return [
+        job.output_dir / name
+        for name in listed
+        if name not in current and name.startswith(f"{job.name}.") and Path(name).name == name
+    ]
 
 
 def _listed_outputs(json_path: Path) -> dict[str, Any]:

@@ -13,6 +13,7 @@ from wrinkle_cad.cad.kernel.loading import kernel_importable
 from wrinkle_cad.errors import Finding
 from wrinkle_cad.options.option import values_of
 from wrinkle_cad.pattern.formats.bend_table import write_bend_table
+from wrinkle_cad.pattern.formats.piece_file import write_pieces
 from wrinkle_cad.pattern.piece.options import PieceOptions, PieceSettings
 from wrinkle_cad.report.limits import Limits, LimitSettings
 from wrinkle_cad.report.material import find_material
@@ -33,6 +34,8 @@ def output_kinds(job: Job) -> tuple[str, ...]:
     extra = tuple(kind for kind in ("svg", "pdf") if getattr(job, kind))
     if job.bend_table or job.equal_bends is not None:
         extra = (*extra, "bends.csv")
+    if job.pieces_file:
+        extra = (*extra, "pieces")
     return ("step", "stl", "dxf", "json", "html", *extra)
 
 
@@ -128,7 +131,7 @@ def write_pattern(
     Args:
         job: the settings.
         pattern: what to write.
-        paths: by kind, "dxf", "svg" and "pdf"; those missing are not written.
+        paths: by kind, "dxf", "svg", "pdf" and so on; those missing are not written.
         timestamp: the time in the files.
 
     Returns:
@@ -151,6 +154,8 @@ def write_pattern(
         changed.update(dict.fromkeys(pattern.export_svg(paths["svg"], profile=job.profile)))
     if "bends.csv" in paths:
         write_bend_table(paths["bends.csv"], pattern.pieces)
+    if "pieces" in paths:
+        write_pieces(paths["pieces"], pattern.pieces)
     if "pdf" in paths:
         changed.update(dict.fromkeys(pattern.export_pdf(paths["pdf"], profile=job.profile)))
     return [asdict(finding) for finding in changed]

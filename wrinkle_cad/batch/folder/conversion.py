@@ -28,10 +28,11 @@ from .inputs import Source
 from .journal import Journal
 from .lock import locked_folder
 from .manifest import WAITING, Manifest, Record
-from .ownership import check_own_files, remove_stale, set_outdated
+from .ownership import check_own_files, is_up_to_date, remove_stale, set_outdated
 from .pages import Pages
 from .plan import PlannedJob
 from .recovery import recover
+from .sheets import LABEL, BatchSheets, SheetsMade
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -101,25 +102,6 @@ def base_record(entry: PlannedJob, versions: Mapping[str, str]) -> Record:
     )
 
 
-def is_up_to_date(earlier: Record | None, base: Record, folder: Path) -> bool:
-    """Whether a file was done with the same input and settings and its outputs are still there."""
-    if earlier is None or not earlier.is_done:
-        return False
-    if earlier.input_sha256 != base.input_sha256:
-        return False
-    if earlier.settings_sha256 != base.settings_sha256:
-        return False
-    target = (folder / base.key).parent
-    try:
-        return all(
-            (target / file.name).stat().st_size == file.bytes
-            and hash_regular(target / file.name) == file.sha256
-            for file in earlier.outputs
-        )
-    except OSError:
-        return False
-
-
 def trouble_of(source: Source, error: Exception) -> str:
     """One sentence for an error about one file that no code foresaw."""
     said = printable(" ".join(str(error).split())[:200]) or "no message"
@@ -160,6 +142,8 @@ class _Conversion:
         self._journal = Journal(folder)
         self._manifest = Manifest(folder)
         self._under_way: dict[int, tuple[Path, Record]] = {}
+        self._sheets = BatchSheets(planned, folder, self._manifest, self._versions)
+        self._sheets_made = SheetsMade()
         self._pages = Pages(folder)
         self._start = time.monotonic()
         self._counts = {"done": 0, "failed": 0, "skipped": 0, "missed": 0, "strict": 0}
@@ -180,6 +164,7 @@ class _Conversion:
         self._pages.write(*self._state())
         try:
             self._work()
+            self._nest()
         except BaseException:
             self._give_up()
             raise
@@ -208,6 +193,18 @@ class _Conversion:
                 self._finish(event.key, event.result)
             self._pages.write_if_due(self._state)
         self._crew.close()
+
+    def _nest(self) -> None:
+        """Puts the pieces of all files on sheets, where these are wanted."""
+        if self._stopped_by:
+            return
+        if self._sheets.is_wanted:
+            self._tell(FilePhase(LABEL, "nest", 0, 1))
+        made = self._sheets.make(self._records, force=self._options.force)
+        for line in (made.said, *made.failures):
+            if line:
+                self._journal.write(f"{LABEL}: {line}")
+        self._sheets_made = made
 
     def _tasks(self) -> Iterator[tuple[int, Task] | None]:
         for key, entry in enumerate(self._planned):
@@ -280,6 +277,7 @@ class _Conversion:
             known=known,
             on_commit=self._manifest.append,
         )
+        self._sheets.set_outdated()
         record = self._manifest.latest(base.key, base.input) or base
         if isinstance(outcome, JobFailed) and record.is_done:
             # Committed, but a final name could not be taken: not done after all.
@@ -307,6 +305,7 @@ class _Conversion:
         record = failed_record(blank, failure)
         earlier = self._manifest.latest(record.key, record.input)
         self._manifest.append(record)
+        self._sheets.set_outdated()
         self._set_outdated(earlier)
         self._count(key, record, "")
 
@@ -347,6 +346,8 @@ class _Conversion:
             missed_limits=counts["missed"],
             strict_misses=counts["strict"],
             seconds=time.monotonic() - self._start,
+            sheets=self._sheets_made.said,
+            sheet_failures=self._sheets_made.failures,
             stopped_by=self._stopped_by,
             is_over=is_over,
         )

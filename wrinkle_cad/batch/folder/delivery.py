@@ -151,7 +151,7 @@ def _done_record(base: Record, result: TaskResult, outcome: JobDone) -> Record:
         base,
         outcome="done",
         outputs=result.outputs,
-        figures=figures_of(outcome.summary),
+        figures={**base.figures, **figures_of(outcome.summary)},
         missed_limits=tuple(printable(line) for line in outcome.missed_limits),
         seconds=dict(outcome.seconds),
         finished=_now(),

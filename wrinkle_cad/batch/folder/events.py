@@ -75,6 +75,10 @@ class BatchSummary:
     """Those of them whose settings say that this is a failure."""
     seconds: float
     """Wall-clock seconds."""
+    sheets: str = ""
+    """The sheets that the pieces of all files lie on, on one line; empty when none are wanted."""
+    sheet_failures: tuple[str, ...] = ()
+    """What is on none of them, and why; one line each."""
     stopped_by: str = ""
     """Why files are left, on one line."""
     is_over: bool = True

@@ -106,6 +106,7 @@ def index_page(records: Sequence[Record], summary: BatchSummary) -> str:
     )
     if summary.missed_limits:
         counts += f" {summary.missed_limits} miss a limit."
+    counts = " ".join((counts, summary.sheets, *summary.sheet_failures)).strip()
     if not summary.is_over:
         counts = f"Under way. {counts}"
     if summary.stopped_by:

@@ -63,6 +63,25 @@ def is_as_written(path: Path, known: Hashes) -> bool:
         return False
 
 
+def is_up_to_date(earlier: Record | None, base: Record, folder: Path) -> bool:
+    """Whether a file was done with the same input and settings and its outputs are still there."""
+    if earlier is None or not earlier.is_done:
+        return False
+    if earlier.input_sha256 != base.input_sha256:
+        return False
+    if earlier.settings_sha256 != base.settings_sha256:
+        return False
+    target = (folder / base.key).parent
+    try:
+        return all(
+            (target / file.name).stat().st_size == file.bytes
+            and hash_regular(target / file.name) == file.sha256
+            for file in earlier.outputs
+        )
+    except OSError:
+        return False
+
+
 def set_outdated(folder: Path, record: Record, known: Hashes) -> tuple[str, ...]:
     """Renames the outputs of a record so that nobody cuts them; only what is as we wrote it.
 

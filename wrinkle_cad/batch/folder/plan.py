@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path, PurePosixPath
 from typing import Any, Final, NamedTuple
@@ -24,9 +24,14 @@ from wrinkle_cad.job.job import Job, make_job, read_job_toml
 
 from .index_page import PAGE_NAME
 from .inputs import Source
+from .sheet_wish import SheetWish, job_without_sheets, wish_of
 
+SHEETS_NAME: Final = "batch.sheets"
+"""Stem of the sheets on which the pieces of all files are nested."""
 FOLDER_TOML: Final = "job.toml"
 FILE_TOML: Final = ".job.toml"
+
+_SHEETS: Final = f"{SHEETS_NAME}."
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -39,6 +44,8 @@ class PlannedJob:
     """Folder and stem of its outputs below the batch's folder; unique among those that run."""
     job: Job
     """The settings; the defaults where the input's own settings cannot be used."""
+    sheet: SheetWish | None = None
+    """What it wants of the sheets that are made of all files' pieces."""
     refusal: str = ""
     """Why it cannot be done, on one line; empty when it can."""
 
@@ -91,7 +98,7 @@ def plan_batch(
                 f"The outputs of {first.label} would be called {entry.key} too, and each file"
                 ' needs a name of its own: give --name "{stem}-{suffix}" or "{folder}-{stem}".'
             )
-            entry = PlannedJob(source=source, key=entry.key, job=entry.job, refusal=refusal)
+            entry = replace(entry, sheet=None, refusal=refusal)
         planned.append(entry)
     return tuple(planned)
 
@@ -119,13 +126,20 @@ def _plan_one(
             f"The outputs would be called {default_name}, and {PAGE_NAME} is the batch's own page."
             ' Give another name, for example with --name "{stem}-{suffix}".'
         )
+    if not refusal and folder == PurePosixPath() and f"{default_name}.".startswith(_SHEETS):
+        refusal = (
+            f"The outputs would be called {default_name}, and a batch's sheets have such names."
+            ' Give another name, for example with --name "{stem}-{suffix}".'
+        )
     if not refusal and not target.resolve().is_relative_to(output_dir.resolve()):
         refusal = (
             f"The output folder {folder} is a link that leads out of {output_dir.name}, and"
             " outputs stay inside. Remove the link."
         )
     key = (folder / default_name).as_posix()
-    return PlannedJob(source=source, key=key, job=job, refusal=refusal)
+    if refusal:
+        return PlannedJob(source=source, key=key, job=job, refusal=refusal)
+    return PlannedJob(source=source, key=key, job=job_without_sheets(job), sheet=wish_of(job))
 
 
 def _line_of(error: Exception, source: Source) -> str:

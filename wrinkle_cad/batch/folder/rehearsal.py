@@ -9,8 +9,9 @@ from wrinkle_cad.errors import InputError
 from wrinkle_cad.files.names import printable
 from wrinkle_cad.job.versions import installed_versions
 
-from .conversion import base_record, is_up_to_date, trouble_of
+from .conversion import base_record, trouble_of
 from .manifest import MANIFEST_NAME, Manifest
+from .ownership import is_up_to_date
 from .plan import PlannedJob
 
 DONE_BEFORE = "done before"
