@@ -26,7 +26,7 @@ from wrinkle_cad.cad.kernel.versions import shape_list
 from wrinkle_cad.cad.upper import carve as carving
 from wrinkle_cad.cad.upper import split as splitting
 from wrinkle_cad.cad.upper import stitch as stitching
-from wrinkle_cad.cad.upper.outline import Side
+from wrinkle_cad.cad.upper.opening_outline import Side
 from wrinkle_cad.cad.upper.profiles import profile_curves
 from wrinkle_cad.cad.upper.sew import Sewn
 from wrinkle_cad.cad.upper.smooth import smooth_edge

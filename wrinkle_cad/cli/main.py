@@ -200,7 +200,7 @@ def job_misses_limits(outcome: JobDone) -> bool:
 
 
 def _print_done(outcome: JobDone) -> None:
-    from .screen import one_line
+    from wrinkle_cad.files.names import one_line
 
     verdict = outcome.summary["verdict"]
     for strip in verdict["strips"]:
@@ -252,9 +252,8 @@ def _compare(given: argparse.Namespace) -> int:
 
 
 def _check(given: argparse.Namespace) -> int:
+    from wrinkle_cad.files.names import one_line
     from wrinkle_cad.pattern.check.judging import judge_dxf
-
-    from .screen import one_line
 
     report = judge_dxf(given.input, cut_layers=tuple(given.cut_layer))
     if given.json:

@@ -3,20 +3,16 @@
 from __future__ import annotations
 
 import sys
-import unicodedata
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any
+
+from wrinkle_cad.files.names import one_line
 
 if TYPE_CHECKING:
     from wrinkle_cad.job.inspection import Inspection
     from wrinkle_cad.job.outcome import Progress
     from wrinkle_cad.report.material import Material
-
-
-def one_line(text: str) -> str:
-    """The text without line breaks and control characters: names come from files."""
-    return "".join("?" if unicodedata.category(c) in ("Cc", "Cf", "Zl", "Zp") else c for c in text)
 
 
 @contextmanager

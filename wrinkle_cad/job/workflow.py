@@ -169,7 +169,7 @@ def findings_on(strip: TriangulatedStrip) -> Iterator[Finding]:
 
 def _write(job: Job, made: Made, summary: dict[str, Any], clock: PhaseClock) -> tuple[Path, ...]:
     from .parts import output_kinds
-    from .writing import page_of, write_flat, write_shapes
+    from .writing import write_flat, write_shapes, written_page
 
     kinds = (*output_kinds(job), *made.sheet_kinds)
     check_outputs_are_ours(job, made.sheet_kinds)
@@ -182,6 +182,6 @@ def _write(job: Job, made: Made, summary: dict[str, Any], clock: PhaseClock) -> 
         # The page shows what the JSON holds, so its own seconds are in neither.
         summary["seconds"] = {phase: round(took, 3) for phase, took in clock.seconds.items()}
         with clock.phase("page"):
-            paths["html"].write_text(page_of(made, summary), encoding="utf-8")
+            paths["html"].write_text(written_page(made, summary), encoding="utf-8")
         paths["json"].write_text(to_json(summary), encoding="utf-8")
     return tuple(output_paths(job, kinds).values())

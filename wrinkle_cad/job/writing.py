@@ -94,7 +94,7 @@ def write_flat(job: Job, made: Made, paths: Mapping[str, Path]) -> list[dict[str
     return changed
 
 
-def page_of(made: Made, summary: Mapping[str, Any]) -> str:
+def written_page(made: Made, summary: Mapping[str, Any]) -> str:
     """The job's page."""
     from wrinkle_cad.report.page import write_page
     from wrinkle_cad.report.views import StripView

@@ -24,7 +24,7 @@ from wrinkle_cad.cad.kernel.topology import (
 )
 from wrinkle_cad.cad.rail.directrix import make_directrix, reversed_directrix
 from wrinkle_cad.cad.upper.carve import carve, carve_shape
-from wrinkle_cad.cad.upper.outline import faded_margin
+from wrinkle_cad.cad.upper.opening_outline import faded_margin
 from wrinkle_cad.cad.upper.smooth import curve_edges, smooth_edge
 from wrinkle_cad.errors import CadError, InputError
 

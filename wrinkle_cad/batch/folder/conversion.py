@@ -24,7 +24,7 @@ from .delivery import deliver, failed_record
 from .disk_space import check_disk_space
 from .events import BatchStarted, BatchSummary, FileFinished, FilePhase, FileSkipped, Listener
 from .fingerprint import hash_settings
-from .inputs import Source
+from .inputs import FoundFile
 from .journal import Journal
 from .lock import locked_folder
 from .manifest import WAITING, Manifest, Record
@@ -102,7 +102,7 @@ def base_record(entry: PlannedJob, versions: Mapping[str, str]) -> Record:
     )
 
 
-def trouble_of(source: Source, error: Exception) -> str:
+def trouble_of(source: FoundFile, error: Exception) -> str:
     """One sentence for an error about one file that no code foresaw."""
     said = printable(" ".join(str(error).split())[:200]) or "no message"
     return (

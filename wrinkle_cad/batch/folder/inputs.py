@@ -13,7 +13,7 @@ from wrinkle_cad.files.names import CAD_SUFFIXES, printable, split_name
 
 
 @dataclass(frozen=True, slots=True)
-class Source:
+class FoundFile:
     """One input file of a batch."""
 
     path: Path
@@ -31,7 +31,7 @@ class Source:
 class Sources:
     """What a search for input files found."""
 
-    files: tuple[Source, ...]
+    files: tuple[FoundFile, ...]
     """The files, ordered by folder and name."""
     notes: tuple[str, ...]
     """One line for each folder that could not be read."""
@@ -119,7 +119,7 @@ def _fixed_part(pattern: str) -> Path:
     return Path(*fixed)
 
 
-def _source(path: Path, base: Path) -> Source:
+def _source(path: Path, base: Path) -> FoundFile:
     folder = Path(os.path.normpath(path.parent))
     relative = folder.relative_to(base) if folder.is_relative_to(base) else Path()
-    return Source(path, PurePosixPath(relative.as_posix()))
+    return FoundFile(path, PurePosixPath(relative.as_posix()))

@@ -23,7 +23,7 @@ from wrinkle_cad.files.names import (
 from wrinkle_cad.job.job import Job, make_job, read_job_toml
 
 from .index_page import PAGE_NAME
-from .inputs import Source
+from .inputs import FoundFile
 from .sheet_wish import SheetWish, job_without_sheets, wish_of
 
 SHEETS_NAME: Final = "batch.sheets"
@@ -38,7 +38,7 @@ _SHEETS: Final = f"{SHEETS_NAME}."
 class PlannedJob:
     """One input of a batch and what will be done with it."""
 
-    source: Source
+    source: FoundFile
     """The input."""
     key: str
     """Folder and stem of its outputs below the batch's folder; unique among those that run."""
@@ -58,7 +58,7 @@ class _Layers(NamedTuple):
 
 
 def plan_batch(
-    sources: Sequence[Source],
+    sources: Sequence[FoundFile],
     output_dir: Path,
     *,
     keywords: Mapping[str, Any] | None = None,
@@ -86,7 +86,7 @@ def plan_batch(
     """
     if mask is not None:
         check_mask(mask)
-    taken: dict[str, Source] = {}
+    taken: dict[str, FoundFile] = {}
     flags = {key: value for key, value in (keywords or {}).items() if value is not None}
     layers = _Layers(_without_paths(common or {}), flags)
     planned = []
@@ -104,7 +104,7 @@ def plan_batch(
 
 
 def _plan_one(
-    source: Source, number: int, output_dir: Path, layers: _Layers, mask: str | None
+    source: FoundFile, number: int, output_dir: Path, layers: _Layers, mask: str | None
 ) -> PlannedJob:
     stem, suffix = split_name(source.path.name)
     fill = partial(apply_mask, stem=stem, suffix=suffix, folder=source.folder, number=number)
@@ -142,7 +142,7 @@ def _plan_one(
     return PlannedJob(source=source, key=key, job=job_without_sheets(job), sheet=wish_of(job))
 
 
-def _line_of(error: Exception, source: Source) -> str:
+def _line_of(error: Exception, source: FoundFile) -> str:
     """Why settings cannot be used: our own sentence, or what no code foresaw in one line."""
     if isinstance(error, JobError):
         return str(error)
@@ -153,7 +153,7 @@ def _line_of(error: Exception, source: Source) -> str:
     )
 
 
-def _unreadable_name(source: Source) -> str:
+def _unreadable_name(source: FoundFile) -> str:
     """Why outputs could not mention the input, or nothing when they can."""
     try:
         str(source.path).encode("utf-8")
@@ -165,7 +165,7 @@ def _unreadable_name(source: Source) -> str:
     return ""
 
 
-def _own_settings(source: Source, stem: str) -> dict[str, Any]:
+def _own_settings(source: FoundFile, stem: str) -> dict[str, Any]:
     own: dict[str, Any] = {}
     for path in (source.path.parent / FOLDER_TOML, source.path.parent / (stem + FILE_TOML)):
         # What is there and no regular file is told; a name too long for one is not there.

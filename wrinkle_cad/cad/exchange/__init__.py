@@ -1,1 +1,1 @@
-"""CAD files in and out: STEP, IGES, BREP, STL; names, colors and units at the border."""
+"""CAD files in and out: STEP, IGES, BREP, STL; names, colors and units."""

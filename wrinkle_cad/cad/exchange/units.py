@@ -1,4 +1,4 @@
-"""Units of length at the border: what a file declares, what the user says, what a mm is."""
+"""Units of length where files come in: what a file declares, what the user says, what a mm is."""
 
 from __future__ import annotations
 

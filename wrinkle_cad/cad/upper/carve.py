@@ -19,7 +19,7 @@ from wrinkle_cad.cad.rail.directrix import Directrix, make_directrix, orient_ali
 from wrinkle_cad.errors import CadError, InputError
 
 from .opening import CarveRequest, Opening
-from .outline import Rail, Side, across_rail, end_between, faded_margin, rail_on, side_of
+from .opening_outline import Rail, Side, across_rail, end_between, faded_margin, rail_on, side_of
 from .projection import UpperFaces
 from .sew import joined
 from .smooth import smooth_edge

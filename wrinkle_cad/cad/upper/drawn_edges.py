@@ -23,7 +23,7 @@ from wrinkle_cad.cad.kernel.splines import make_curve, make_curve_2d
 from wrinkle_cad.strip.curve.cubic import cubic_through
 from wrinkle_cad.strip.curve.polyline import arc_lengths
 
-from .outline import Side
+from .opening_outline import Side
 
 Floats = NDArray[np.float64]
 BETWEEN = np.array([0.25, 0.5, 0.75])

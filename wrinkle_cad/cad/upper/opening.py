@@ -11,7 +11,7 @@ from OCP.TopoDS import TopoDS_Edge, TopoDS_Shape
 
 from wrinkle_cad.cad.rail.directrix import Directrix
 
-from .outline import Rail
+from .opening_outline import Rail
 from .smooth import curve_edges, edge_row
 
 if TYPE_CHECKING:

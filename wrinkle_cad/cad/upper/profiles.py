@@ -19,7 +19,7 @@ from wrinkle_cad.errors import InputError
 from wrinkle_cad.strip.portable import cos, sin
 
 from .opening import Opening
-from .outline import Rail
+from .opening_outline import Rail
 from .smooth import curve_edges, smooth_edge
 
 if TYPE_CHECKING:

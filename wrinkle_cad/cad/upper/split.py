@@ -36,7 +36,7 @@ from wrinkle_cad.strip.curve.polyline import arc_lengths
 from wrinkle_cad.strip.portable import dot, norm
 
 from .drawn_edges import drawn_edges
-from .outline import Side, unit
+from .opening_outline import Side, unit
 
 Floats = NDArray[np.float64]
 

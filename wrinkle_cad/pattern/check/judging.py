@@ -16,6 +16,7 @@ from typing import Final
 import numpy as np
 
 from wrinkle_cad.errors import Finding, Severity
+from wrinkle_cad.strip.curve.polyline import segment_lengths
 
 from . import limits
 from .contours import judge_contours
@@ -24,7 +25,7 @@ from .drawing_space import judge_space
 from .entities import FileLine, FileMark
 from .grouping import grouped
 from .pieces import judge_pieces
-from .reading import DxfContent, read_dxf, segment_lengths
+from .reading import DxfContent, read_dxf
 
 _UNIT_NAMES: Final = {0: "none", 1: "inches", 2: "feet", 4: "mm", 5: "cm", 6: "m", 13: "microns"}
 _MM: Final = 4
@@ -156,7 +157,8 @@ def _texts(content: DxfContent) -> Iterator[Finding]:
 
 def _lines(content: DxfContent) -> Iterator[Finding]:
     for line in content.lines:
-        lengths = segment_lengths(line)
+        first = line.points[: int(line.is_closed)]
+        lengths = segment_lengths(np.vstack((line.points, first)))
         short = np.flatnonzero(lengths < limits.ZERO)
         if len(short) or len(line.points) < 2:
             yield _finding(

@@ -12,17 +12,15 @@ from pathlib import Path
 from typing import Final
 
 import ezdxf
-import numpy as np
 from ezdxf import disassemble
 from ezdxf.document import Drawing as DxfDocument
 from ezdxf.entities import DXFEntity
 
 from wrinkle_cad import settings
 from wrinkle_cad.errors import InputError
-from wrinkle_cad.pattern.piece.piece import Floats
 
+from .document import check_unfolding, open_dxf
 from .entities import LINES, FileLine, FileMark, line_of, mark_of
-from .opening import check_unfolding, open_dxf
 
 ENTITIES: Final = "ENTITIES"
 """The space of what does not stand in a block."""
@@ -208,12 +206,3 @@ def _insert(entity: DXFEntity) -> FileInsert:
         (place.x, place.y, place.z),
         scales == (1.0, 1.0, 1.0) and entity.dxf.rotation == 0.0,
     )
-
-
-def segment_lengths(line: FileLine) -> Floats:
-    """Returns the lengths in mm of a line's segments, (k,) where it is closed or (k-1,)."""
-    points = line.points
-    after = np.roll(points, -1, axis=0) if line.is_closed else points[1:]
-    before = points if line.is_closed else points[:-1]
-    lengths: Floats = np.hypot(*(after - before).T)
-    return lengths

@@ -12,6 +12,7 @@ import numpy as np
 
 from wrinkle_cad import settings
 from wrinkle_cad.errors import InputError
+from wrinkle_cad.strip.curve.polyline import points_at, row_lengths
 
 from .options import NotchRule
 from .outline import turns
@@ -87,7 +88,7 @@ def corner_arcs(line: Floats, arcs: Floats) -> Floats:
     return inner
 
 
-def points_at(line: Floats, arcs: Floats, at: Floats) -> tuple[Floats, Floats]:
+def points_and_directions(line: Floats, arcs: Floats, at: Floats) -> tuple[Floats, Floats]:
     """Returns points (k, 2) mm and unit directions (k, 2) on a flat rail at given arc lengths.
 
     Args:
@@ -97,7 +98,5 @@ def points_at(line: Floats, arcs: Floats, at: Floats) -> tuple[Floats, Floats]:
     """
     i = np.clip(np.searchsorted(arcs, at, side="right") - 1, 0, len(arcs) - 2)
     step = line[i + 1] - line[i]
-    span = arcs[i + 1] - arcs[i]
-    share = np.divide(at - arcs[i], span, out=np.zeros_like(span), where=span > 0.0)
-    lengths = np.linalg.norm(step, axis=1)
-    return line[i] + share[:, None] * step, step / np.where(lengths > 0.0, lengths, 1.0)[:, None]
+    lengths = row_lengths(step)
+    return points_at(line, arcs, at), step / np.where(lengths > 0.0, lengths, 1.0)[:, None]

@@ -16,7 +16,7 @@ import shapely
 
 from .flat import FlatStrip
 from .notch_forms import notch_lines
-from .notches import corner_arcs, notch_arcs, points_at
+from .notches import corner_arcs, notch_arcs, points_and_directions
 from .options import END_SIDE, P_SIDE, Q_SIDE, START_SIDE, NotchRule, PerSide, PieceSettings
 from .piece import Floats, Notch, Outline, frozen
 
@@ -106,7 +106,7 @@ def placed_notches(
     notches: list[Notch] = []
     refused: list[Refusal] = []
     for side, line, rail_arcs, at in _seams(strip, arcs):
-        feet, along = points_at(line, rail_arcs, at)
+        feet, along = points_and_directions(line, rail_arcs, at)
         # P and the end are walked with the piece on the left, Q and the start on the right.
         turn = 1.0 if side in (P_SIDE, END_SIDE) else -1.0
         outward = turn * np.column_stack((along[:, 1], -along[:, 0]))

@@ -12,7 +12,7 @@ from .creases import Crease
 from .rail_curve import RailCurve
 from .sheet import Sheet
 from .stations import Stations
-from .surface import RuledStrip, make_surface, rule_sheet
+from .surface import RuledStrip, rule_sheet, ruled_strip_of
 
 Floats = npt.NDArray[np.float64]
 
@@ -41,7 +41,7 @@ def rule_closed_strip(p: RailCurve, q: RailCurve, bridges: tuple[Floats, Floats]
     whole = p.length + q.length
     first = int(np.searchsorted(along, whole / 2.0))
     last = int(np.searchsorted(along, along[first] + whole * (1.0 - 1e-12)))
-    both = make_surface(sheet, turns[0], turns[1], spacing)
+    both = ruled_strip_of(sheet, turns[0], turns[1], spacing)
     arcs = [
         float(rail.arc_at(np.array([start]))[0]) for rail, start in zip(rails, starts, strict=True)
     ]
@@ -50,7 +50,7 @@ def rule_closed_strip(p: RailCurve, q: RailCurve, bridges: tuple[Floats, Floats]
         for crease in both.creases
         if first <= crease.ruling < last
     )
-    turn = make_surface(_part(sheet, first, last), turns[0], turns[1], spacing)
+    turn = ruled_strip_of(_part(sheet, first, last), turns[0], turns[1], spacing)
     return replace(turn, creases=creases, radius=both.radius[first:last])
 
 

@@ -79,7 +79,7 @@ def rule_strip(p: RailCurve, q: RailCurve, bridges: tuple[Floats, Floats]) -> Ru
         bridges: (k,) float64 each; parameters on P and Q of the triangulation's bridges, in order.
     """
     sheet, spacing = rule_sheet(p, q, bridges)
-    return make_surface(sheet, p, q, spacing)
+    return ruled_strip_of(sheet, p, q, spacing)
 
 
 def rule_sheet(p: RailCurve, q: RailCurve, bridges: tuple[Floats, Floats]) -> tuple[Sheet, float]:
@@ -101,7 +101,7 @@ def rule_sheet(p: RailCurve, q: RailCurve, bridges: tuple[Floats, Floats]) -> tu
     return sheet, pairing.spacing
 
 
-def make_surface(sheet: Sheet, p: RailCurve, q: RailCurve, spacing: float) -> RuledStrip:
+def ruled_strip_of(sheet: Sheet, p: RailCurve, q: RailCurve, spacing: float) -> RuledStrip:
     """Returns the pieces and figures of a sheet.
 
     Args:
