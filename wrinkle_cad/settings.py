@@ -101,6 +101,8 @@ Search = Literal["global", "local"]
 """The exact optimum, or one step ahead at a time."""
 Energy = Literal["hinge", "paper"]
 """How bending is measured."""
+Ends = Literal["fixed", "free"]
+"""Whether a strip has all of its rails, or begins and ends where that is best."""
 Surface = Literal["cones", "facets"]
 """Faces of a strip: their banks are the exact curves, or planar triangles."""
 StepSchema = Literal["AP214", "AP242"]

@@ -47,8 +47,8 @@ def ways_around(m: int, n: int) -> Iterator[tuple[tuple[int, int], ...]]:
             yield tuple(path)
 
 
-def every_way_around(p: np.ndarray, q: np.ndarray, energy: str) -> dict:
-    """What each closed triangulation measures, by its triangles."""
+def every_way_around(p: np.ndarray, q: np.ndarray, energy: str, ways: dict | None = None) -> dict:
+    """What each closed triangulation measures, by its triangles; its bridges go into `ways`."""
     m, n = len(p), len(q)
     lines = Around(p), Around(q)
     shift = 10 * m, 10 * n
@@ -72,6 +72,8 @@ def every_way_around(p: np.ndarray, q: np.ndarray, energy: str) -> dict:
         around = [before, *path]
         bends = [bent(*around[k - 1 : k + 2]) for k in range(1, len(around) - 1)]
         corners = [brute_force.third(*lines, *path[k : k + 2]) for k in range(len(path) - 1)]
+        if ways is not None:
+            ways[triangles_of(way, m, n)] = list(way)
         tried[triangles_of(way, m, n)] = {
             "fold-backs": sum(back for _, _, back in bends),
             "degenerate": sum(brute_force.is_flat(three) for three in corners),

@@ -109,6 +109,24 @@ def test_rails_that_cannot_be_closed_are_refused(change, message: str) -> None:
         triangulate(change(circle(8, 5.0, 0.0)), circle(8, 5.0, 3.0), closed=True)
 
 
-def test_the_local_search_finds_no_closed_strips() -> None:
-    with pytest.raises(InputError, match="The local search finds no closed strips"):
-        triangulate(circle(8, 5.0, 0.0), circle(8, 5.0, 3.0), closed=True, search="local")
+@pytest.mark.parametrize("criteria", [("invalid", "bending"), ("bending",)])
+def test_the_local_search_goes_around_from_the_shortest_bridge(criteria) -> None:
+    p, q = wavy(60, 50.0, 0.0, 5), wavy(70, 40.0, 60.0, 3)
+    found = triangulate(p, q, closed=True, search="local", criteria=criteria)
+    assert (found.bridges[-1] - found.bridges[0]).tolist() == [60, 70]
+    i, j = found.bridges[0]
+    shortest = np.linalg.norm(p[:, None] - q[None], axis=2).min()
+    assert np.linalg.norm(p[i] - q[j]) == pytest.approx(shortest, rel=1e-12)
+    best = triangulate(p, q, closed=True, criteria=criteria, price=None)
+    if criteria[0] == "invalid":
+        assert best.counted_invalid_count <= found.counted_invalid_count
+    else:
+        assert best.bending <= found.bending * (1 + 1e-9)
+
+
+@pytest.mark.parametrize("turn", [0, 7, 31])
+def test_a_frustum_found_locally_is_the_frustum_wherever_it_begins(turn: int) -> None:
+    p, q = circle(60, 50.0, 0.0), np.roll(circle(60, 30.0, 80.0), turn, axis=0)
+    found = triangulate(p, q, closed=True, search="local")
+    assert found.area == pytest.approx(triangulate(p, q, closed=True).area, rel=1e-9)
+    assert found.counted_invalid_count == 0

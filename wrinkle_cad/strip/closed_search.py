@@ -9,6 +9,9 @@ which is exact if its path ends n behind its start. Else the range is cut betwee
 parts are searched, the cheaper bound first, without the starts whose own bound is no better than
 the best closed path.
 
+Pinned bridges lie at places of the strip's cover, where it runs on and on around: the rails are
+started at the first of them, and bridges are barred that no path through the others can have.
+
 Starts are taken on the rail with fewer samples. Smooth strips of 180 and 240 samples took one to
 four programs, flat and noisy ones up to forty.
 """
@@ -16,11 +19,14 @@ four programs, flat and noisy ones up to forty.
 from __future__ import annotations
 
 import heapq
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from itertools import combinations, product
 
 import numpy as np
 import numpy.typing as npt
 
+from .bars import Bars, bar_row, no_bars
 from .compiled import compiled
 from .convexity import judge_row
 from .folding import cost_row, new_costs
@@ -40,7 +46,7 @@ class ClosedPath:
     """The best way once around a closed strip."""
 
     start: tuple[int, int]
-    """i, j of the bridge where it starts and ends: i or j is 0."""
+    """i, j of the bridge where it starts and ends."""
     steps: Steps
     """(m+n,) int8; 0 a P-step, 1 a Q-step, from the start until it is reached again."""
     programs: int
@@ -57,6 +63,7 @@ def _decide_range(
     planarity: float,
     nothing: float,
     energy: int,
+    bars: Bars,
 ) -> tuple[Floats, npt.NDArray[np.uint8]]:
     """One program over the starts (0, first), ..., (0, first + starts - 1).
 
@@ -89,6 +96,7 @@ def _decide_range(
         look_along(p[i % m], p_banks, columns, q_banks, view)
         judge_row(view, planarity, valid)
         cost_row(view, banks, nothing, planarity, energy, costs)
+        bar_row(view, Bars(bars.bridges[:, first:], bars.least_cosine), i - 1, costs)
         decide_row(weights, False, view, valid, costs, ahead, choices[i - 1])
     return ahead[:starts].copy(), choices
 
@@ -123,14 +131,34 @@ class _Cost:
 class _Search:
     """Branch and bound over the starts on the columns' rail."""
 
-    def __init__(self, p: Floats, q: Floats, weights: Weights, limits: tuple[float, float, int]):
+    def __init__(
+        self,
+        p: Floats,
+        q: Floats,
+        weights: Weights,
+        limits: tuple[float, float, int],
+        bars: Bars,
+    ) -> None:
         self.p, self.columns = p, np.ascontiguousarray(q.T)
         self.weights, self.limits = weights, limits
+        self.bars = Bars(np.ascontiguousarray(bars.bridges), bars.least_cosine)
         self.programs = 0
         self.best: tuple[_Cost, int, Steps] | None = None
 
-    def run(self) -> tuple[int, Steps]:
+    @property
+    def cost(self) -> _Cost:
+        """Of the best closed path, once the search has run."""
+        assert self.best is not None
+        return self.best[0]
+
+    @property
+    def found(self) -> tuple[int, Steps]:
         """The start of the best closed path, and its steps."""
+        assert self.best is not None
+        return self.best[1:]
+
+    def run(self) -> None:
+        """Finds the best closed path."""
         ranges: list[tuple[_Cost, int, int, list[_Cost]]] = []
         self._search_range(0, self.columns.shape[1], ranges)
         while ranges:
@@ -141,8 +169,6 @@ class _Search:
             for part in ([j for j in starts if j < cut], [j for j in starts if j >= cut]):
                 if part:
                     self._search_range(part[0], part[-1] + 1, ranges)
-        assert self.best is not None
-        return self.best[1], self.best[2]
 
     def _is_open(self, bound: _Cost) -> bool:
         return self.best is None or bound < self.best[0]
@@ -180,11 +206,20 @@ class _Search:
             planarity,
             nothing,
             energy,
+            self.bars,
         )
 
 
 def closed_steps(
-    p: Floats, q: Floats, weights: Weights, *, planarity: float, nothing: float, energy: int
+    p: Floats,
+    q: Floats,
+    weights: Weights,
+    *,
+    planarity: float,
+    nothing: float,
+    energy: int,
+    bars: Bars | None = None,
+    pinned: Sequence[tuple[int, int]] = (),
 ) -> ClosedPath:
     """Returns the triangulation of a closed strip that costs least of all, over all its starts.
 
@@ -196,11 +231,71 @@ def closed_steps(
         planarity: mm; see validity_matrix; also how far coplanar triangles are apart.
         nothing: mm; a distance that is round-off.
         energy: HINGE or PAPER.
+        bars: bridges and folds to avoid wherever that can be; none by default.
+        pinned: bridges it must have; some path has all of them (is_around).
     """
     is_swapped = q.shape[0] > p.shape[0]
     rails = (q, p) if is_swapped else (p, q)
-    search = _Search(*rails, weights, (planarity, nothing, energy))
-    start, steps = search.run()
+    pins = [pin[::-1] if is_swapped else pin for pin in pinned]
+    barred, least_cosine = no_bars() if bars is None else bars
+    base = pins[0] if pins else (0, 0)
+    rolled = [np.roll(rail, -at, axis=0) for rail, at in zip(rails, base, strict=True)]
+    around = np.roll(barred.T if is_swapped else barred, (-base[0], -base[1]), (0, 1))
+    best: _Search | None = None
+    programs = 0
+    for cover in _covers(around, pins, (len(rails[0]), len(rails[1]))):
+        search = _Search(
+            rolled[0], rolled[1], weights, (planarity, nothing, energy), Bars(cover, least_cosine)
+        )
+        search.run()
+        programs += search.programs
+        if best is None or search.cost < best.cost:
+            best = search
+    assert best is not None
+    start, steps = best.found
+    first = base[0], (base[1] + start) % len(rails[1])
     if is_swapped:
-        return ClosedPath((start, 0), (1 - steps).astype(np.int8), search.programs)
-    return ClosedPath((0, start), steps, search.programs)
+        return ClosedPath(first[::-1], (1 - steps).astype(np.int8), programs)
+    return ClosedPath(first, steps, programs)
+
+
+def is_around(pinned: Sequence[tuple[int, int]], m: int, n: int) -> bool:
+    """Whether some path around a closed strip of m and n samples has all of the pinned bridges.
+
+    Example:
+        >>> is_around([(0, 0), (2, 3), (5, 4)], 8, 8), is_around([(0, 0), (2, 4), (5, 3)], 8, 8)
+        (True, False)
+    """
+    return not pinned or any(True for _ in _places(pinned, m, n))
+
+
+def _places(
+    pinned: Sequence[tuple[int, int]], m: int, n: int
+) -> Iterator[tuple[tuple[int, int], ...]]:
+    """Where pinned bridges can lie on one turn of the cover, from the first one to itself again."""
+    ways = []
+    for i, j in dict.fromkeys(((a - pinned[0][0]) % m, (b - pinned[0][1]) % n) for a, b in pinned):
+        own = [(i, j)]
+        own += [(m, j)] * (i == 0) + [(i, n)] * (j == 0)
+        ways.append([(0, 0)] if i == j == 0 else own)
+    for places in product(*ways):
+        if all((a - c) * (b - d) >= 0 for (a, b), (c, d) in combinations(places, 2)):
+            yield places
+
+
+def _covers(
+    barred: npt.NDArray[np.bool_], pinned: Sequence[tuple[int, int]], shape: tuple[int, int]
+) -> Iterator[npt.NDArray[np.bool_]]:
+    """The barred bridges of samples 1 to m and 0 to 2 n of the cover, for each way to pin them."""
+    m, n = shape
+    if not pinned:
+        yield np.roll(np.tile(barred, 2), -1, axis=0)
+        return
+    once = np.roll(barred, -1, axis=0) if barred.size else np.zeros(shape, dtype=np.bool_)
+    rows, columns = np.arange(1, m + 1)[:, None], np.arange(2 * n)
+    for places in _places(pinned, m, n):
+        cover = np.tile(once, 2)
+        # The bridges before the first step on P are seen on the next turn, so pins stand there too.
+        for i, j in (*places, *((i + m, j + n) for i, j in places)):
+            cover |= ((rows < i) & (columns > j)) | ((rows > i) & (columns < j))
+        yield cover

@@ -17,17 +17,12 @@ from wrinkle_cad.errors import InputError
 Floats = npt.NDArray[np.float64]
 
 
-def check_closed(p: Floats, q: Floats, search: str) -> None:
-    """Refuses rails that cannot be closed, and a search that knows no closed strips.
+def check_closed(p: Floats, q: Floats) -> None:
+    """Refuses rails that cannot be closed.
 
     Raises:
-        InputError: a rail has fewer than three samples or repeats its first one, or the search is
-            local.
+        InputError: a rail has fewer than three samples or repeats its first one.
     """
-    if search != "global":
-        raise InputError(
-            f"The {search} search finds no closed strips: search globally, or cut the strip open."
-        )
     for name, rail in (("P", p), ("Q", q)):
         if len(rail) < 3:
             raise InputError(

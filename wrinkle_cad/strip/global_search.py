@@ -18,6 +18,7 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 
+from .bars import Bars, bar_row, no_bars
 from .compiled import compiled
 from .convexity import judge_row
 from .folding import StepCosts, cost_row, new_costs
@@ -138,6 +139,7 @@ def _decide_all(
     planarity: float,
     nothing: float,
     energy: int,
+    bars: Bars,
 ) -> npt.NDArray[np.uint8]:
     """The step to take from every bridge, (m, n) uint8, as decide_row writes it."""
     m, n = p.shape[0], q.shape[1]
@@ -155,6 +157,7 @@ def _decide_all(
         look_along(p[i], p_banks[:, i : i + 2], q, q_banks, view)
         judge_row(view, planarity, valid)
         cost_row(view, banks, nothing, planarity, energy, costs)
+        bar_row(view, bars, i, costs)
         decide_row(weights, i == m - 1, view, valid, costs, ahead, choices[i])
     return choices
 
@@ -173,7 +176,14 @@ def _follow(choices: npt.NDArray[np.uint8]) -> npt.NDArray[np.int8]:
 
 
 def best_steps(
-    p: Floats, q: Floats, weights: Weights, *, planarity: float, nothing: float, energy: int
+    p: Floats,
+    q: Floats,
+    weights: Weights,
+    *,
+    planarity: float,
+    nothing: float,
+    energy: int,
+    bars: Bars | None = None,
 ) -> npt.NDArray[np.int8]:
     """Returns the steps of the triangulation that costs least of all.
 
@@ -186,12 +196,21 @@ def best_steps(
         planarity: mm; see validity_matrix; also how far coplanar triangles are apart.
         nothing: mm; a distance that is round-off.
         energy: HINGE or PAPER.
+        bars: bridges and folds to avoid wherever that can be; none by default.
 
     Returns:
         (m+n-2,) int8: 0 a P-step, 1 a Q-step. Of equal continuations the P-step is taken.
     """
     columns = np.ascontiguousarray(q.T)
     choices = _decide_all(
-        p, padded_banks(p), columns, padded_banks(q), weights, planarity, nothing, energy
+        p,
+        padded_banks(p),
+        columns,
+        padded_banks(q),
+        weights,
+        planarity,
+        nothing,
+        energy,
+        no_bars() if bars is None else bars,
     )
     return _follow(choices)

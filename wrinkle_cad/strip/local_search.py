@@ -9,6 +9,9 @@ What the paper leaves open is decided so:
   not, then one that makes a triangle of zero area, whatever it bends; coplanar triangles do not
   bend. Of two steps that bend equally (at the first bridge nothing bends) the one to the shorter
   bridge is taken, of equal ones the P-step.
+- Where bridges or folds are barred, a step from which the end cannot be reached without one is not
+  taken; a goal that is passed by then is given up.
+- A closed strip begins at a given bridge and ends at it: what is chosen there sees no seam.
 - A valid bridge is preferred to an invalid one as the paper says, even where the strip is flat or
   folds back: one step ahead, nothing tells whether the next bridge bends. There is no price.
 """
@@ -18,14 +21,19 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 
+from .bars import Bars
+from .closed_strip import closed_line
 from .compiled import compiled
 from .convexity import judge_row
 from .folding import cost_row, new_costs
 from .objective import REAL_TIE
+from .open_ways import open_ways
 from .sightlines import VIEW_ROWS, bank_lengths, look_along, padded_banks
 
 Floats = npt.NDArray[np.float64]
 Rails = tuple[Floats, Floats, Floats, Floats]
+
+_NO_WAYS = np.zeros((0, 0), dtype=np.uint8)
 
 
 @compiled
@@ -92,13 +100,19 @@ def _nearest_valid(rails: Rails, i: int, j: int, planarity: float) -> tuple[int,
 
 @compiled
 def _walk(
-    rails: Rails, is_developable: bool, planarity: float, nothing: float, energy: int
+    rails: Rails,
+    is_developable: bool,
+    planarity: float,
+    nothing: float,
+    energy: int,
+    ways: npt.NDArray[np.uint8],
 ) -> npt.NDArray[np.int8]:
     m, n = rails[0].shape[0], rails[2].shape[1]
     steps = np.empty(m + n - 2, dtype=np.int8)
     goal_i, goal_j = (0, 0) if is_developable else (m - 1, n - 1)
     i = j = step = 0
     for number in range(m + n - 2):
+        earlier = step
         if i == goal_i and j == goal_j:
             goal_i, goal_j = -1, -1
         if goal_i < 0 and i < m - 1 and j < n - 1:
@@ -117,6 +131,10 @@ def _walk(
                 step = 0 if j == goal_j else 1
             else:
                 step = _easier_step(rails, i, j, step, planarity, nothing, energy)
+        if ways.shape[0] > 0 and not (ways[i, j] >> (2 * earlier + step)) & 1:
+            step = 1 - step
+            if (step == 0 and i == goal_i) or (step == 1 and j == goal_j):
+                goal_i, goal_j = -1, -1
         steps[number] = step
         i, j = i + 1 - step, j + step
     return steps
@@ -130,11 +148,12 @@ def local_steps(
     planarity: float,
     nothing: float,
     energy: int,
+    bars: Bars | None = None,
 ) -> npt.NDArray[np.int8]:
     """Returns the steps of the locally best triangulation.
 
     O(m+n) time and memory but for the looks for a nearest valid bridge, each of which costs the
-    square of the distance it finds.
+    square of the distance it finds; with bars O(m n).
 
     Args:
         p: (m, 3) float64, mm; checked samples of directrix P.
@@ -143,10 +162,74 @@ def local_steps(
         planarity: mm; see validity_matrix.
         nothing: mm; a distance that is round-off.
         energy: HINGE or PAPER.
+        bars: bridges and folds to avoid if that can be.
 
     Returns:
         (m+n-2,) int8: 0 a P-step, 1 a Q-step.
     """
     rails = (p, padded_banks(p), np.ascontiguousarray(q.T), padded_banks(q))
-    steps: npt.NDArray[np.int8] = _walk(rails, is_developable, planarity, nothing, energy)
+    ways = _NO_WAYS
+    if bars is not None:
+        ways = open_ways(rails, bars, (planarity, nothing, energy), -1)
+    return _steps(rails, ways, is_developable, planarity, nothing, energy)
+
+
+def closed_local_steps(
+    p: Floats,
+    q: Floats,
+    start: tuple[int, int],
+    *,
+    is_developable: bool,
+    planarity: float,
+    nothing: float,
+    energy: int,
+    bars: Bars | None = None,
+) -> npt.NDArray[np.int8]:
+    """Returns the steps of the locally best triangulation around a closed strip from a bridge.
+
+    Args:
+        p: (m, 3) float64, mm; checked samples of closed directrix P, the first not repeated.
+        q: (n, 3) float64, mm; those of closed directrix Q.
+        start: i, j of the bridge where it begins and ends.
+        is_developable: see local_steps.
+        planarity: mm; see validity_matrix.
+        nothing: mm; a distance that is round-off.
+        energy: HINGE or PAPER.
+        bars: of the bridges from the start to itself again, (m+1, n+1).
+
+    Returns:
+        (m+n,) int8: 0 a P-step, 1 a Q-step.
+    """
+    lines = [
+        closed_line(np.roll(rail, -at, axis=0)) for rail, at in zip((p, q), start, strict=True)
+    ]
+    banks = []
+    for line in lines:
+        own = padded_banks(line)
+        own[:, 0], own[:, -1] = own[:, -2], own[:, 1]
+        banks.append(own)
+    rails = (lines[0], banks[0], np.ascontiguousarray(lines[1].T), banks[1])
+    if bars is None:
+        return _steps(rails, _NO_WAYS, is_developable, planarity, nothing, energy)
+    tried = []
+    for first in (0, 1):
+        ways = open_ways(rails, bars, (planarity, nothing, energy), first)
+        ways[0, 0] &= 1 << first
+        steps = _steps(rails, ways, is_developable, planarity, nothing, energy)
+        if ways[0, 0]:
+            return steps
+        tried.append(steps)
+    return tried[0]
+
+
+def _steps(
+    rails: Rails,
+    ways: npt.NDArray[np.uint8],
+    is_developable: bool,
+    planarity: float,
+    nothing: float,
+    energy: int,
+) -> npt.NDArray[np.int8]:
+    is_open = ways if ways.size and ways[0, 0] else _NO_WAYS
+    steps: npt.NDArray[np.int8] = _walk(rails, is_developable, planarity, nothing, energy, is_open)
     return steps

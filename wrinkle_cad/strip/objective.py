@@ -24,6 +24,9 @@ FOLD_BACK, DEGENERATE, INVALID, BENDING, AREA, LENGTH, FLAT_INVALID, TIE = range
 """Columns of a part. INVALID counts the invalid bridges at which the strip bends, FLAT_INVALID all
 of them."""
 
+UNUSED: Final = 8
+"""Unused rail: no column, for it is charged at the two ends alone."""
+
 REAL_TIE: Final = 1e-12
 """Sums of energies, areas or lengths that differ by a smaller share are equal but for round-off:
 the same terms, added in another order or measured on congruent triangles."""
@@ -35,7 +38,7 @@ _MEASURES: Final = {
     "length": (LENGTH,),
 }
 _COUNTS: Final = (FOLD_BACK, DEGENERATE, INVALID, FLAT_INVALID)
-_PART_COUNTS: Final = (4, 7)
+_PART_COUNTS: Final = (4, 7, 8)
 """Weights have so many parts, the last ones empty: each number is compiled once."""
 
 
@@ -89,7 +92,54 @@ def weights_of(
         (0.0, 0.0, 0.0, 0.0, 0.0, 1.0)
         (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
     """
+    sums = _sums(checked_criteria(criteria), invalid_cost)
+    parts = [_part(one) for one in _merged(sums, bridge_count)]
+    return _filled(parts)
+
+
+def free_weights_of(
+    criteria: Sequence[Criterion],
+    *,
+    bridge_count: int,
+    invalid_cost: float | None = None,
+    unused_cost: float | None = None,
+) -> tuple[Weights, tuple[float, ...]]:
+    """Returns the weights where rail may be given up, and what 1 mm of it costs in each part.
+
+    With a price it is charged in bending, and of equal costs the one with less unused rail wins.
+    Without, it comes just behind the leading counts: no rail is given up for less bending.
+
+    Args:
+        criteria: see weights_of.
+        bridge_count: see weights_of.
+        invalid_cost: see weights_of.
+        unused_cost: the bending energy that 1 mm of unused rail is worth, for criteria that begin
+            with "bending" and for those with a price; None without.
+
+    Returns:
+        4, 7 or 8 parts, and as many charges.
+
+    Example:
+        >>> free_weights_of(["bending"], bridge_count=6, unused_cost=0.5)[1]
+        (0.0, 0.5, 1.0, 0.0, 0.0, 0.0, 0.0)
+    """
     names = checked_criteria(criteria)
+    sums = _sums(names, invalid_cost)
+    is_charged = unused_cost is not None and (invalid_cost is not None or names[0] == "bending")
+    at = next(k for k, one in enumerate(sums) if not _is_count(one))
+    if not is_charged:
+        at = {"invalid": 2, "bending": 2}.get(names[0], 1)
+    sums.insert(at + 1 if is_charged else at, {UNUSED: 1.0})
+    merged = _merged(sums, bridge_count)
+    charges = [1.0 if UNUSED in one else 0.0 for one in merged]
+    if is_charged and unused_cost is not None:
+        charges[charges.index(1.0) - 1] = unused_cost
+    weights = _filled([_part(one) for one in merged])
+    return weights, tuple(charges + [0.0] * (len(weights) - len(charges)))
+
+
+def _sums(names: tuple[Criterion, ...], invalid_cost: float | None) -> list[dict[int, float]]:
+    """What is summed up in each part of the cost, in order."""
     sums: list[dict[int, float]] = []
     if invalid_cost is not None:
         sums = [{DEGENERATE: 1.0}, {BENDING: 1.0, INVALID: invalid_cost}]
@@ -99,7 +149,10 @@ def weights_of(
     if "length" not in names:
         sums.append({LENGTH: 1.0})
     sums.append({FLAT_INVALID: 1.0})
-    parts = [_part(one) for one in _merged(sums, bridge_count)]
+    return sums
+
+
+def _filled(parts: list[Part]) -> Weights:
     room = next(count for count in _PART_COUNTS if count >= len(parts))
     return tuple(parts + [_part({})] * (room - len(parts)))
 

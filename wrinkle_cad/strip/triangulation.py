@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, Final
 
 import numpy as np
@@ -14,24 +14,24 @@ from wrinkle_cad.errors import InputError
 from wrinkle_cad.settings import (
     CRITERIA,
     ENERGY,
-    LARGEST_PRICE,
     PRICE,
     SEARCH,
     Criterion,
+    Ends,
     Energy,
     Search,
 )
 
-from .closed_search import ClosedPath, closed_steps
 from .closed_strip import check_closed, closed_line, middle_turn, three_turns
+from .constraints import Constraints, bars_of, check_constraints
+from .contradiction import is_kept, refuse
 from .folding import ENERGIES
-from .global_search import best_steps
 from .inflection import fan_aware_twist, inflection_bridges
-from .local_search import local_steps
-from .objective import checked_criteria, is_priced, weights_of
+from .objective import checked_criteria, is_priced
 from .path import walk
 from .rails import check_rails_apart, checked_planarity, checked_rails, coarser_sagitta, round_off
-from .validity_price import invalid_cost, least_bending
+from .validity_price import checked_price, invalid_cost, least_bending, unused_cost
+from .ways import Task, Way, check_ends, check_search, checked_give_up, unused_lengths, way_of
 
 Floats = npt.NDArray[np.float64]
 Bools = npt.NDArray[np.bool_]
@@ -111,6 +111,11 @@ class Triangulation:
     samples, of that side thinned to 250; None without a price."""
     is_closed: bool = False
     """Whether the last bridge is the first one again."""
+    first_samples: tuple[int, int] = (0, 0)
+    """Which samples of the given rails are the first of `p` and `q`; others than 0 where ends are
+    free and rail was given up."""
+    unused: tuple[float, float, float, float] = (0.0, 0.0, 0.0, 0.0)
+    """mm of the given rails that free ends left: of P before and behind the strip, of Q."""
 
     def __repr__(self) -> str:
         return (
@@ -158,6 +163,13 @@ def triangulate(
     planarity: float | None = None,
     price: float | None = PRICE,
     closed: bool = False,
+    pinned: Sequence[tuple[int, int]] = (),
+    forbidden: Sequence[tuple[int, int, int, int]] = (),
+    max_lean: float | None = None,
+    max_ruling: float | None = None,
+    fold_bound: float | None = None,
+    ends: Ends = "fixed",
+    give_up: float | None = None,
 ) -> Triangulation:
     """Returns the triangulation between two rails that is best by ordered criteria.
 
@@ -188,14 +200,26 @@ def triangulate(
             the rails' median sagitta.
         price: what an invalid bridge more is worth, from 0 to 1e6, or None. Of no effect with other
             criteria, with the paper's energy and in the local search.
-
         closed: both rails are closed, their first points not repeated: the best triangulation over
-            all starting bridges, by global search. Where a rail begins does not matter.
+            all starting bridges. Where a rail begins does not matter, but to the local search,
+            which starts at the first pinned bridge or at the shortest one.
+        pinned: bridges (i, j) that the strip has.
+        forbidden: (first i, last i, first j, last j): no bridge goes from the one stretch of
+            samples to the other; of closed rails a stretch may run past the last sample.
+        max_lean: rad; largest angle of a bridge to the shortest crossing, from its end on P to the
+            nearest point of Q or the other way round, whichever is smaller.
+        max_ruling: mm; longest bridge.
+        fold_bound: rad; largest fold at an interior bridge.
+        ends: "fixed": the strip has the rails' ends; "free": it begins and ends wherever that is
+            best, and the strip is between the rails so shortened. A length of rail is worth
+            GIVE_UP_PRICE times the mean bending of so much rail, where bending has a price or is
+            the first criterion; else it is given up for the leading counts only.
+        give_up: mm of each rail that free ends may leave at either end.
 
     Raises:
         InputError: a rail is no (k, 3) array of finite points, both are single points, the rails
-            coincide over more than one bank edge, all triangles have zero area, or an option is
-            unknown.
+            coincide over more than one bank edge, all triangles have zero area, an option is
+            unknown, or no triangulation keeps the constraints; the message names those that fail.
 
     Example:
         A square tent with a ridge along y: flat on either side of it.
@@ -208,92 +232,80 @@ def triangulate(
     if energy not in ENERGIES:
         raise InputError(f"energy cannot be {energy!r}: choose one of {', '.join(ENERGIES)}.")
     names = checked_criteria(criteria)
+    check_search(search, names)
     has_price = search == "global" and energy == "hinge" and is_priced(names)
-    price = _checked_price(price) if has_price else None
+    price = checked_price(price) if has_price else None
+    give_up = checked_give_up(ends, give_up)
     p, q = checked_rails(p, q)
     if closed:
-        check_closed(p, q, search)
+        check_closed(p, q)
+    constraints = Constraints(
+        pinned=tuple((int(i), int(j)) for i, j in pinned),
+        forbidden=tuple((int(a), int(b), int(c), int(d)) for a, b, c, d in forbidden),
+        max_lean=max_lean,
+        max_ruling=max_ruling,
+        fold_bound=fold_bound,
+    )
+    check_constraints(constraints, len(p), len(q), closed=closed)
     # Every sample of a closed rail has two neighbours, the first and the last too.
     p_line, q_line = (closed_line(p, 2), closed_line(q, 2)) if closed else (p, q)
     limit = checked_planarity(p_line, q_line, planarity)
     check_rails_apart(p_line, q_line, limit)
-    least = cost = start = None
-    if price is not None:
-        least = least_bending(p, q, planarity=limit, nothing=round_off(p, q), closed=closed)
-        cost = invalid_cost(price, *least)
-    if closed:
-        way = _search_around(p, q, names, ENERGIES[energy], planarity=limit, invalid_cost=cost)
-        start, steps = way.start, way.steps
-    else:
-        steps = _search(p, q, names, search, ENERGIES[energy], planarity=limit, invalid_cost=cost)
-    return measured(
-        p,
-        q,
-        steps,
-        planarity=limit,
+    nothing = round_off(p, q)
+    least = None
+    is_charged = give_up is not None and energy == "hinge" and names[0] == "bending"
+    if price is not None or is_charged:
+        least = least_bending(p, q, planarity=limit, nothing=nothing, closed=closed)
+    task = Task(
+        p=p,
+        q=q,
         criteria=names,
         search=search,
-        energy=energy,
-        price=price,
-        least_bending=None if least is None else least[0],
-        start=start,
+        energy=ENERGIES[energy],
+        planarity=limit,
+        nothing=nothing,
+        invalid_cost=None if price is None or least is None else invalid_cost(price, *least),
+        is_closed=closed,
+        give_up=give_up,
+        unused_cost=None if least is None else unused_cost(least[0], p, q),
     )
+    check_ends(task)
+
+    def best(asked: Constraints) -> tuple[Triangulation, bool]:
+        bars = bars_of(asked, p, q, closed=closed)
+        found = _measured_way(task, way_of(task, asked, bars), energy, price, least)
+        return found, is_kept(found, asked, bars)
+
+    found, has_all = best(constraints)
+    if not has_all:
+        refuse(constraints, best)
+    return found
 
 
-def _checked_price(price: float | None) -> float | None:
-    if price is not None and not 0.0 <= price <= LARGEST_PRICE:
-        raise InputError(
-            f"price cannot be {price}: give a number from 0 to {LARGEST_PRICE:g}, or None, which"
-            " puts validity before any bending."
-        )
-    return None if price is None else float(price)
-
-
-def _search_around(
-    p: Floats,
-    q: Floats,
-    criteria: tuple[Criterion, ...],
-    energy: int,
-    *,
-    planarity: float,
-    invalid_cost: float | None,
-) -> ClosedPath:
-    count = p.shape[0] + q.shape[0]
-    weights = weights_of(criteria, bridge_count=count, invalid_cost=invalid_cost)
-    nothing = round_off(p, q)
-    return closed_steps(p, q, weights, planarity=planarity, nothing=nothing, energy=energy)
-
-
-def _search(
-    p: Floats,
-    q: Floats,
-    criteria: tuple[Criterion, ...],
-    search: Search,
-    energy: int,
-    *,
-    planarity: float,
-    invalid_cost: float | None,
-) -> Steps:
-    nothing = round_off(p, q)
-    if search == "global":
-        count = p.shape[0] + q.shape[0]
-        weights = weights_of(criteria, bridge_count=count, invalid_cost=invalid_cost)
-        return best_steps(p, q, weights, planarity=planarity, nothing=nothing, energy=energy)
-    if search != "local":
-        raise InputError(f"search cannot be {search!r}: choose one of global, local.")
-    if criteria[0] not in ("invalid", "bending"):
-        raise InputError(
-            f"A local search cannot start with the criterion {criteria[0]}, only with invalid or"
-            " bending: search globally."
-        )
-    return local_steps(
+def _measured_way(
+    task: Task, way: Way, energy: Energy, price: float | None, least: tuple[float, int] | None
+) -> Triangulation:
+    """The triangulation that a way makes, of the rails as far as they are used."""
+    p, q, first = task.p, task.q, way.start
+    if task.give_up is not None:
+        q_steps = int(np.count_nonzero(way.steps))
+        p = p[first[0] : first[0] + len(way.steps) - q_steps + 1]
+        q = q[first[1] : first[1] + q_steps + 1]
+    found = measured(
         p,
         q,
-        is_developable=criteria[0] == "invalid",
-        planarity=planarity,
-        nothing=nothing,
+        way.steps,
+        planarity=task.planarity,
+        criteria=task.criteria,
+        search=task.search,
         energy=energy,
+        price=price,
+        least_bending=None if least is None or price is None else least[0],
+        start=first if task.is_closed else None,
     )
+    if task.give_up is None:
+        return found
+    return replace(found, first_samples=first, unused=unused_lengths(task, way))
 
 
 def measured(

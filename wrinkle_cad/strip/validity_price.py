@@ -9,20 +9,41 @@ does not depend on the sampling; it is taken on rails of at most 250 samples, so
 from __future__ import annotations
 
 import math
+from typing import Final
 
 import numpy as np
 import numpy.typing as npt
 
-from wrinkle_cad.settings import PRICE_SAMPLES
+from wrinkle_cad.errors import InputError
+from wrinkle_cad.settings import LARGEST_PRICE, PRICE_SAMPLES
 
 from .closed_search import closed_steps
 from .closed_strip import closed_line, three_turns
+from .curve.polyline import polyline_length
 from .folding import HINGE
 from .global_search import best_steps
 from .objective import weights_of
 from .path import walk
 
 Floats = npt.NDArray[np.float64]
+
+GIVE_UP_PRICE: Final = 10.0
+"""A length of rail is given up where it holds so many times the bending that it would hold if the
+least bending were spread over both rails."""
+
+
+def checked_price(price: float | None) -> float | None:
+    """Returns a price as a float.
+
+    Raises:
+        InputError: it is out of range.
+    """
+    if price is not None and not 0.0 <= price <= LARGEST_PRICE:
+        raise InputError(
+            f"price cannot be {price}: give a number from 0 to {LARGEST_PRICE:g}, or None, which"
+            " puts validity before any bending."
+        )
+    return None if price is None else float(price)
 
 
 def thinned_rail(rail: Floats) -> Floats:
@@ -90,3 +111,14 @@ def invalid_cost(price: float, least: float, interior_count: int) -> float:
         interior_count: its interior bridges.
     """
     return price * least / interior_count if interior_count else 0.0
+
+
+def unused_cost(least: float, p: Floats, q: Floats) -> float:
+    """Returns the bending energy that 1 mm of rail is worth where ends are free.
+
+    Args:
+        least: bending energy of the least-bending triangulation of the whole strip.
+        p: (m, 3) float64, mm; samples of directrix P.
+        q: (n, 3) float64, mm; samples of directrix Q.
+    """
+    return GIVE_UP_PRICE * least / (polyline_length(p) + polyline_length(q))
