@@ -170,3 +170,28 @@ def test_a_flat_strip_has_no_bend_radius_in_the_json() -> None:
     assert report.smallest_bend_radius_mm == np.inf
     assert report.as_json()["smallest_bend_radius_mm"] is None
     assert report.as_json()["inner_bend_radius_mm"] is None
+
+
+def test_what_is_said_of_the_material_holds_for_the_pattern_as_well() -> None:
+    plain = WrinkleStrip(spline(0.0), spline(20.0))
+    thick = WrinkleStrip(spline(0.0), spline(20.0), thickness=2.0, k_factor=0.3, grain="across")
+    as_a_job_has_it = plain.pattern(thickness=2.0, k_factor=0.3, grain="across")
+    (piece,), (expected,) = thick.pattern().pieces, as_a_job_has_it.pieces
+    assert np.array_equal(piece.cut_line, expected.cut_line)
+    assert np.array_equal(piece.grain_line, expected.grain_line)
+    assert not np.array_equal(piece.cut_line, plain.pattern().pieces[0].cut_line)
+
+
+@pytest.mark.parametrize(
+    ("wrong", "said"),
+    [
+        ({"thickness": -1}, r"^thickness cannot be -1 mm: give a number from 0 to 1000 mm\.$"),
+        ({"k_factor": 1}, r"^k_factor cannot be 1: give a number above 0 and below 1\.$"),
+        ({"grain": "up"}, r"^grain cannot be 'up': give along, across or 3 numbers"),
+        ({"color": (0, 0, 2)}, r"^color cannot be \(0, 0, 2\): give 3 numbers from 0 to 1\.$"),
+        ({"thicknes": 1}, r"^WrinkleStrip\(\) has no option 'thicknes': did you mean thickness"),
+    ],
+)
+def test_every_option_of_a_strip_is_checked(wrong: dict[str, object], said: str) -> None:
+    with pytest.raises(InputError, match=said):
+        WrinkleStrip(spline(0.0), spline(20.0), **wrong)  # type: ignore[arg-type]

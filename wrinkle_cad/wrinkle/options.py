@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
-from typing import ClassVar
+from dataclasses import dataclass, field, fields
+from typing import ClassVar, Final
 
 from wrinkle_cad import settings
 from wrinkle_cad.options.checking import check_options
 from wrinkle_cad.options.option import option
-from wrinkle_cad.pattern.piece.options import Direction
+from wrinkle_cad.pattern.piece.options import Direction, PieceOptions
+
+_OF_PIECES: Final = {field.name: field.metadata for field in fields(PieceOptions)}
+"""What is said of an option that a strip and its pieces share."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -67,8 +70,18 @@ class StripArguments(StripSettings):
 
     p: object
     q: object
-    name: str = field(default=settings.STRIP_NAME, kw_only=True)
-    color: tuple[float, float, float] = field(default=settings.STRIP_COLOR, kw_only=True)
-    thickness: float = field(default=0.0, kw_only=True)
-    k_factor: float = field(default=settings.K_FACTOR, kw_only=True)
-    grain: Direction = field(default="along", kw_only=True)
+    name: str = field(
+        default=settings.STRIP_NAME,
+        kw_only=True,
+        metadata=option("label of the surface and of the pattern"),
+    )
+    color: tuple[float, float, float] = field(
+        default=settings.STRIP_COLOR,
+        kw_only=True,
+        metadata=option("of the surface: red, green, blue", least=0.0, most=1.0),
+    )
+    thickness: float = field(default=0.0, kw_only=True, metadata=_OF_PIECES["thickness"])
+    k_factor: float = field(
+        default=settings.K_FACTOR, kw_only=True, metadata=_OF_PIECES["k_factor"]
+    )
+    grain: Direction = field(default="along", kw_only=True, metadata=_OF_PIECES["grain"])

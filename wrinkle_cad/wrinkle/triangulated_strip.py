@@ -294,7 +294,7 @@ class TriangulatedStrip:
 
         Args:
             piece_settings: allowances, notches, texts and the rest; when None, the defaults with
-                the strip's tolerance.
+                the strip's own tolerance, thickness, K-factor and grain.
             options: fields of ``PieceSettings`` by name; they go before ``piece_settings``.
 
         Raises:
@@ -304,7 +304,12 @@ class TriangulatedStrip:
         from .cut_pattern import pattern_of_strips
 
         check_known(options, (option.name for option in fields(PieceSettings)), "pattern()")
-        base = piece_settings or PieceSettings(tolerance=self.tolerance)
+        base = piece_settings or PieceSettings(
+            tolerance=self.tolerance,
+            thickness=self.thickness,
+            k_factor=self.k_factor,
+            grain=self.grain,
+        )
         return pattern_of_strips([self], replace(base, **options))
 
     def plot_validity(self, ax: Axes) -> Axes:

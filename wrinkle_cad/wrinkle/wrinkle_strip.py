@@ -4,16 +4,14 @@ from __future__ import annotations
 
 from typing import Any
 
-from wrinkle_cad import settings
 from wrinkle_cad.cad.rail.directrix import check_distinct, make_directrix, orient_alike
 from wrinkle_cad.errors import Finding
 from wrinkle_cad.options.checking import check_known
 from wrinkle_cad.options.option import options_of
 from wrinkle_cad.options.signature import takes_options_of
-from wrinkle_cad.pattern.piece.options import Direction
 
 from .found_strip import found_between
-from .options import StripArguments, StripSettings
+from .options import StripArguments
 from .triangulated_strip import TriangulatedStrip
 
 
@@ -29,12 +27,8 @@ class WrinkleStrip(TriangulatedStrip):
         p: directrix P: a build123d Edge, Wire, ShapeList or list of edges, the same from CadQuery
             (anything with ``.wrapped``), or an array (k, 3) of points in mm.
         q: directrix Q, likewise; turned round when it runs against P, which is reported.
-        name: label of the surface and of the pattern.
-        color: of the surface, (red, green, blue) from 0 to 1.
-        thickness: mm; of the material, which bends more sharply at its inner face.
-        k_factor: where its neutral layer lies, in shares of the thickness from the inner face.
-        grain: of the material: ``along`` or ``across`` the strip, or a direction in space.
-        options: those of ``StripSettings``, by name; ``help(WrinkleStrip.__init__)`` lists them.
+        options: how it is sampled, searched and made, its name and color, and the material, by
+            name; ``help(WrinkleStrip.__init__)`` lists them with their units and defaults.
 
     Raises:
         InputError: a curve or an option cannot be used.
@@ -54,21 +48,10 @@ class WrinkleStrip(TriangulatedStrip):
     """
 
     @takes_options_of(StripArguments)
-    def __init__(
-        self,
-        p: object,
-        q: object,
-        *,
-        name: str = settings.STRIP_NAME,
-        color: tuple[float, float, float] = settings.STRIP_COLOR,
-        thickness: float = 0.0,
-        k_factor: float = settings.K_FACTOR,
-        grain: Direction = "along",
-        **options: Any,
-    ) -> None:
+    def __init__(self, p: object, q: object, **options: Any) -> None:
         """Finds the strip."""
-        check_known(options, options_of(StripSettings), "WrinkleStrip()")
-        chosen = StripSettings(**options)
+        check_known(options, options_of(StripArguments), "WrinkleStrip()")
+        chosen = StripArguments(p, q, **options)
         given_p, given_q = make_directrix(p, name="P"), make_directrix(q, name="Q")
         check_distinct(given_p, given_q)
         p_rail, q_rail, was_turned = orient_alike(given_p, given_q)
@@ -78,13 +61,13 @@ class WrinkleStrip(TriangulatedStrip):
             *found.samples,
             found.triangulation,
             tolerance=chosen.tolerance,
-            name=name,
-            color=color,
+            name=chosen.name,
+            color=chosen.color,
             surface=chosen.surface,
-            thickness=thickness,
-            k_factor=k_factor,
-            grain=grain,
-            findings=_orientation_findings(name) if was_turned else (),
+            thickness=chosen.thickness,
+            k_factor=chosen.k_factor,
+            grain=chosen.grain,
+            findings=_orientation_findings(chosen.name) if was_turned else (),
         )
 
 
