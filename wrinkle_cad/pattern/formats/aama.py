@@ -81,7 +81,7 @@ def block_document(
         _write_marks(block, piece, profile)
         document.modelspace().add_blockref(name, (0.0, 0.0), dxfattribs={"layer": "1"})
     findings += text_changed("style name", style, _stated(style) or STYLE_NAME)
-    _write_style(document, pieces, style, timestamp)
+    _write_style(document, pieces, profile, style, timestamp)
     _add_layers(document, profile)
     return document, tuple(findings)
 
@@ -268,7 +268,11 @@ def _write_marks(block: BlockLayout, piece: PatternPiece, profile: Profile) -> N
 
 
 def _write_style(
-    document: DxfDocument, pieces: Sequence[PatternPiece], style: str, timestamp: datetime
+    document: DxfDocument,
+    pieces: Sequence[PatternPiece],
+    profile: Profile,
+    style: str,
+    timestamp: datetime,
 ) -> None:
     lines = (
         f"Style Name: {_stated(style) or STYLE_NAME}",
@@ -281,7 +285,9 @@ def _write_style(
         "ASTM/D13Proposal 1 Version: D 6673-10",
     )
     height = settings.TEXT_HEIGHT
-    corner = np.array((0.0, -2.0 * height))
+    # Texts beside a narrow piece may lie lower than the piece itself.
+    lowest = min(float(block_text_box(piece, profile)[:, 1].min()) for piece in pieces)
+    corner = np.array((0.0, min(0.0, lowest) - 2.0 * height))
     _write_column(document.modelspace(), lines, "1", corner, height)
 
 
