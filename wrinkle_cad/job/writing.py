@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import datetime
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final, Literal
 
@@ -83,7 +83,7 @@ def write_flat(job: Job, made: Made, paths: Mapping[str, Path]) -> list[dict[str
 
     moment = timestamp_of(job)
     changed = write_pattern(job, made.pattern, paths, moment)
-    write_sheets(
+    told = write_sheets(
         [paths[kind] for kind in made.sheet_kinds],
         made.sheets,
         profile=job.profile,
@@ -91,7 +91,8 @@ def write_flat(job: Job, made: Made, paths: Mapping[str, Path]) -> list[dict[str
         curves=job.curves,
         timestamp=moment,
     )
-    return changed
+    more = [asdict(finding) for finding in dict.fromkeys(told)]
+    return changed + [finding for finding in more if finding not in changed]
 
 
 def written_page(made: Made, summary: Mapping[str, Any]) -> str:

@@ -215,7 +215,7 @@ def write_sheets(
             version=version,
             curves=curves,
             timestamp=moment,
-            is_laid=True,
+            sheet=sheet.size,
         )
     )
 

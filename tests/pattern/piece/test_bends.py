@@ -9,12 +9,14 @@ import math
 import ezdxf
 import numpy as np
 import pytest
+import shapely
 
 from tests.pattern import strips
 from wrinkle_cad.errors import ExportError
 from wrinkle_cad.pattern.check.judging import judge_dxf
 from wrinkle_cad.pattern.formats.bend_table import bend_table, write_bend_table
 from wrinkle_cad.pattern.formats.dxf import write_dxf
+from wrinkle_cad.pattern.piece.lettering import lettering
 from wrinkle_cad.pattern.piece.making import make_pieces
 from wrinkle_cad.pattern.piece.options import PieceSettings
 
@@ -118,3 +120,17 @@ def test_what_was_noticed_is_told_once_for_both_feet():
     settings = PieceSettings(equal_bends=4, hand="left")
     pieces = make_pieces(*strips.cylinder(), name="tube", settings=settings)
     assert [len(piece.findings) for piece in pieces] == [1, 0]
+
+
+def test_the_grain_line_stands_between_bends_where_it_has_room():
+    p = np.linspace(0.0, np.pi / 2, 41)
+    arc = np.column_stack((80.0 * np.sin(p), np.zeros(41), 80.0 * np.cos(p)))
+    made = strips.unrolled(arc, arc + np.array((0.0, 40.0, 0.0)))
+    for count, is_clear in ((4, True), (60, False)):
+        piece = piece_of(made, equal_bends=count)
+        grain = shapely.LineString(lettering(piece, piece.texts).grain_line)
+        bends = shapely.MultiLineString(list(piece.bends.lines))
+        assert grain.intersects(bends) != is_clear
+        if is_clear:
+            assert grain.length >= 8.0
+            assert grain.distance(bends) > 1.0

@@ -147,20 +147,14 @@ def test_without_a_search_the_layout_is_the_same_every_time():
         assert np.array_equal(first.cut_line, second.cut_line)
 
 
-def test_a_sheets_file_has_the_pieces_where_they_lie_and_no_text_beside_them(tmp_path):
+def test_a_sheets_file_has_the_pieces_where_they_lie(tmp_path):
     pieces = strips_and_bands(6)
     (sheet,) = nested(pieces, sheet=(400.0, 300.0))
     path = tmp_path / "sheet.dxf"
-    write_dxf(path, sheet.pieces, is_laid=True)
+    write_dxf(path, sheet.pieces, sheet=(400.0, 300.0))
     assert judge_dxf(path).is_clean
     space = ezdxf.readfile(path).modelspace()
     for contour, piece in zip(space.query("*[layer=='CUT']"), sheet.pieces, strict=True):
         assert np.allclose(np.array(contour.get_points("xy")), piece.cut_line, atol=2e-6)
-    regions = [shapely.Polygon(piece.cut_line) for piece in sheet.pieces]
-    for text in space.query("TEXT"):
-        assert any(
-            region.contains(shapely.Point(text.dxf.insert.x, text.dxf.insert.y))
-            for region in regions
-        )
     with pytest.raises(InputError, match="Choose the profile cutter"):
-        dxf_file(sheet.pieces, profile="aama", is_laid=True)
+        dxf_file(sheet.pieces, profile="aama", sheet=(400.0, 300.0))

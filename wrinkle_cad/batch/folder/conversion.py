@@ -201,7 +201,7 @@ class _Conversion:
         if self._sheets.is_wanted:
             self._tell(FilePhase(LABEL, "nest", 0, 1))
         made = self._sheets.make(self._records, force=self._options.force)
-        for line in (made.said, *made.failures):
+        for line in (made.said, *made.failures, *made.notes):
             if line:
                 self._journal.write(f"{LABEL}: {line}")
         self._sheets_made = made

@@ -49,11 +49,13 @@ class SheetsMade:
 
     Attributes:
         said: how many there are and how full, on one line; empty when none are wanted.
+        notes: what was noticed while they were written.
         failures: what is on none of them, and why; one line each.
     """
 
     said: str = ""
     failures: tuple[str, ...] = ()
+    notes: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -87,6 +89,7 @@ class BatchSheets:
         self._manifest = manifest
         self._versions = versions
         self._is_outdated = False
+        self._notes: list[str] = []
 
     @property
     def is_wanted(self) -> bool:
@@ -138,7 +141,7 @@ class BatchSheets:
             return SheetsMade(failures=(f"The sheets were not written. {outcome.message}",))
         record = self._manifest.latest(SHEETS_NAME, LABEL) or base
         remove_stale(self._folder, record, known)
-        return self._told(record, len(wanted))
+        return replace(self._told(record, len(wanted)), notes=tuple(dict.fromkeys(self._notes)))
 
     def _told(self, record: Record, done: int) -> SheetsMade:
         wanting = sum(entry.sheet is not None or bool(entry.refusal) for entry in self._planned)
@@ -174,7 +177,7 @@ class BatchSheets:
         paths: list[Path] = []
         try:
             for lot in lots:
-                here = _nested_lot(lot, len(sheets), job, failures)
+                here = _nested_lot(lot, len(sheets), job, failures, self._notes)
                 names = [_path(job, len(sheets) + 1 + k) for k in range(len(here))]
                 rows += _rows(lot, here, names)
                 sheets, paths = sheets + here, paths + names
@@ -217,7 +220,9 @@ def _lots(
     return tuple(lots.values())
 
 
-def _nested_lot(lot: _Lot, before: int, job: Job, failures: list[str]) -> list[NestedSheet]:
+def _nested_lot(
+    lot: _Lot, before: int, job: Job, failures: list[str], notes: list[str]
+) -> list[NestedSheet]:
     """Returns the sheets of a lot, written under the names after those of earlier lots."""
     from wrinkle_cad.pattern.piece.compacting import compacted
     from wrinkle_cad.pattern.piece.nesting import nested
@@ -230,7 +235,7 @@ def _nested_lot(lot: _Lot, before: int, job: Job, failures: list[str]) -> list[N
         sheets = [
             compacted(one, seconds=wish.seconds) for one in nested(lot.pieces, sheet=wish.size)
         ]
-        write_sheets(
+        told = write_sheets(
             [_path(job, before + 1 + k) for k in range(len(sheets))],
             sheets,
             profile=wish.profile,
@@ -241,6 +246,7 @@ def _nested_lot(lot: _Lot, before: int, job: Job, failures: list[str]) -> list[N
     except InputError as error:
         failures.append(f"{len(lot.pieces)} pieces are on no sheet. {error}")
         return []
+    notes += [finding.message for finding in told]
     return sheets
 
 

@@ -7,6 +7,7 @@ points for holes, single-line texts. No blocks. Millimetres, said in the header 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import Final
 
 import ezdxf
@@ -23,6 +24,7 @@ from .contours import closed_spline, with_arcs
 from .drawing import Drawing, Stroke, draw
 from .layers import LINE_TYPES, LayerStyle, Profile, Role
 from .plain_text import ascii_text, text_changed
+from .sheet_texts import SheetTexts, sheet_texts
 
 _CURVE_PER_TOLERANCE: Final = 0.5
 """Arcs and splines leave the polygon of an outline by this share of the chord tolerance: with those
@@ -36,7 +38,7 @@ def cutter_document(
     release: str,
     curves: Curves,
     test_square: bool,
-    has_room_beside: bool = True,
+    sheet: tuple[float, float] | None = None,
 ) -> tuple[DxfDocument, tuple[Finding, ...]]:
     """Returns a document with all pieces where they stand, and which texts had to be changed.
 
@@ -46,13 +48,17 @@ def cutter_document(
         release: R2000 or later.
         curves: how the contours are written.
         test_square: add the square that shows the scale.
-        has_room_beside: whether texts may stand beside their piece.
+        sheet: mm, of material, on which the pieces are nested; their texts may then not stand
+            beside them.
     """
     document = ezdxf.new(release, units=ezdxf.units.MM)
     _add_tables(document, profile)
     findings: list[Finding] = []
-    for piece in pieces:
-        drawing = draw(piece, has_room_beside=has_room_beside)
+    told = (None,) * len(pieces) if sheet is None else sheet_texts(pieces, sheet)
+    for piece, texts in zip(pieces, told, strict=True):
+        drawing = draw(piece) if texts is None else _drawn_on_sheet(piece, texts)
+        if not drawing.labels:
+            findings.append(_unnamed_finding(piece))
         _write_strokes(document.modelspace(), drawing, piece, profile, curves)
         findings += _write_labels(document.modelspace(), drawing, piece, profile)
     if test_square:
@@ -62,6 +68,23 @@ def cutter_document(
     low, high = corners.min(axis=0), corners.max(axis=0)
     document.modelspace().reset_extents((*rounded(low), 0.0), (*rounded(high), 0.0))
     return document, tuple(findings)
+
+
+def _drawn_on_sheet(piece: PatternPiece, texts: SheetTexts) -> Drawing:
+    drawing = draw(piece, texts=texts.inside)
+    if texts.beside is None or texts.leader is None:
+        return drawing
+    strokes = (texts.leader, *drawing.strokes)
+    return replace(drawing, strokes=strokes, labels=(texts.beside,))
+
+
+def _unnamed_finding(piece: PatternPiece) -> Finding:
+    return Finding(
+        "name-left-out",
+        "warning",
+        f"Neither {piece.name} nor the waste near it has room for its name on the sheet. Mark it "
+        "by hand after cutting.",
+    )
 
 
 def attributes(style: LayerStyle) -> dict[str, object]:

@@ -6,6 +6,7 @@ them show the same.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 from wrinkle_cad.pattern.piece.lettering import arrow_lines, lettering
@@ -52,20 +53,19 @@ class Drawing:
     labels: tuple[Label, ...]
 
 
-def draw(piece: PatternPiece, *, has_room_beside: bool = True) -> Drawing:
+def draw(piece: PatternPiece, *, texts: Sequence[str] | None = None) -> Drawing:
     """Returns the strokes, spots and labels of a piece, in the order in which a machine acts.
 
     Args:
         piece: what is drawn.
-        has_room_beside: False on a sheet full of pieces: a piece that has no room for its texts
-            then has its name only, or nothing.
+        texts: what is written on it, or beside it with a leader; all its texts when None.
     """
     strokes: list[Stroke] = []
     if piece.has_allowance:
         strokes.append(Stroke("sew", piece.sew_line, is_closed=True))
-    lettered = lettering(piece, piece.texts)
-    if lettered.leader is not None and not has_room_beside:
-        lettered = lettering(piece, (piece.name,))
+    written = piece.texts if texts is None else tuple(texts)
+    # Without a text nothing is moved to make room for it.
+    lettered = lettering(piece, written or (piece.name,))
     for line, fold in zip(lettered.rulings, lettered.ruling_fold, strict=True):
         strokes.append(Stroke("mountain" if fold > 0.0 else "valley", line))
     if piece.bends is not None:
@@ -74,8 +74,7 @@ def draw(piece: PatternPiece, *, has_room_beside: bool = True) -> Drawing:
     strokes += [Stroke("grain", line) for line in arrow_lines(lettered.grain_line)]
     if piece.stretch_line is not None:
         strokes += [Stroke("stretch", line) for line in arrow_lines(piece.stretch_line)]
-    is_told = has_room_beside or lettered.leader is None
-    if lettered.leader is not None and is_told:
+    if lettered.leader is not None and written:
         strokes.append(Stroke("text", lettered.leader))
     for notch in piece.notches:
         # Without an allowance a slit would go into the product.
@@ -86,7 +85,7 @@ def draw(piece: PatternPiece, *, has_room_beside: bool = True) -> Drawing:
     spots = tuple(Spot("punch", frozen(hole)) for hole in piece.drill_holes)
     labels = (
         Label("text", row.text, row.position, row.height, row.angle)
-        for row in (lettered.rows if is_told else ())
+        for row in (lettered.rows if written else ())
     )
     return Drawing(tuple(strokes), spots, tuple(labels))
 

@@ -59,7 +59,7 @@ def dxf_file(
     test_square: bool = False,
     style: str = STYLE_NAME,
     timestamp: datetime | None = None,
-    is_laid: bool = False,
+    sheet: tuple[float, float] | None = None,
 ) -> DxfFile:
     """Returns a DXF file of all pieces, laid out side by side at one scale.
 
@@ -71,15 +71,15 @@ def dxf_file(
         test_square: add a square of 100 mm to check the scale on the machine.
         style: what all pieces belong to, as files of pieces (aama, astm) state it.
         timestamp: what the file says about when it was made; ``EPOCH`` if None.
-        is_laid: the pieces stay where they are, as on a sheet on which they were nested; texts
-            without room inside their piece are left out.
+        sheet: mm, length and width of the material on which the pieces are nested: they stay where
+            they are, and a piece without room for its texts has its name in the waste near it.
 
     Raises:
         InputError: no pieces, an unknown option, or options that exclude each other.
     """
     chosen = profile if isinstance(profile, Profile) else profile_from(profile)
     _check_options(pieces, chosen, version, curves)
-    if is_laid and chosen.is_blocks:
+    if sheet is not None and chosen.is_blocks:
         raise InputError(
             f"Sheets are drawings for a cutter, and {chosen.name} is a file of pieces that pattern "
             "CAD nests itself. Choose the profile cutter."
@@ -101,12 +101,12 @@ def dxf_file(
                 findings = (*findings, _layout_blocks_finding(chosen.name, release))
         else:
             document, findings = cutter_document(
-                pieces if is_laid else laid_out(pieces, reach=text_box),
+                pieces if sheet is not None else laid_out(pieces, reach=text_box),
                 chosen,
                 release="R2000" if release == "R12" else release,
                 curves=curves,
                 test_square=test_square,
-                has_room_beside=not is_laid,
+                sheet=sheet,
             )
         _export(document, stream, is_r12=release == "R12", is_blocks=chosen.is_blocks)
     return DxfFile(stamped(stream.getvalue(), moment).encode("ascii"), findings)
@@ -131,7 +131,7 @@ def write_dxf(
     curves: Curves = "lines",
     test_square: bool = False,
     timestamp: datetime | None = None,
-    is_laid: bool = False,
+    sheet: tuple[float, float] | None = None,
 ) -> tuple[Finding, ...]:
     """Writes a DXF file, whole or not at all, and returns the findings of ``dxf_file``.
 
@@ -149,7 +149,7 @@ def write_dxf(
         test_square=test_square,
         style=path.stem,
         timestamp=timestamp,
-        is_laid=is_laid,
+        sheet=sheet,
     )
     try:
         write_atomically(path, made.content)

@@ -42,6 +42,10 @@ _COLUMN_GAP: Final = 2.0
 """Heights of a letter between columns."""
 _BESIDE: Final = 8.0
 """mm from a piece to the texts beside it."""
+_ARROW_HALF: Final = 1.05
+"""mm; half the breadth of an arrowhead."""
+_SHORTEST_GRAIN: Final = 8.0
+"""mm; a grain line between bends has room for two arrowheads."""
 _HOLE: Final = 1.0
 """mm; radius that is kept free around a drill hole."""
 
@@ -197,10 +201,26 @@ def _inside(piece: PatternPiece, lines: Sequence[str]) -> Lettering | None:
 
 
 def _grain_lines(piece: PatternPiece) -> tuple[Floats, ...]:
-    """Returns the grain line as it is, then its far and its near half."""
-    tail, head = piece.grain_line
+    """Returns the grain line between bends, then its far and its near half."""
+    line = _between_bends(piece)
+    tail, head = line
     middle = 0.5 * (tail + head)
-    return piece.grain_line, frozen((middle, head)), frozen((tail, middle))
+    return line, frozen((middle, head)), frozen((tail, middle))
+
+
+def _between_bends(piece: PatternPiece) -> Floats:
+    """Returns the longest part of the grain line that crosses no bend, all of it if none is long.
+
+    Rulings are broken around the grain line; a bend is a line that a machine follows.
+    """
+    if piece.bends is None or not len(piece.bends.lines):
+        return piece.grain_line
+    bends = shapely.union_all(shapely.linestrings(piece.bends.lines)).buffer(_CLEAR + _ARROW_HALF)
+    parts = shapely.get_parts(shapely.LineString(piece.grain_line).difference(bends))
+    longest = max(parts, key=lambda part: float(part.length), default=shapely.LineString())
+    if longest.length < _SHORTEST_GRAIN:
+        return piece.grain_line
+    return frozen(longest.coords)
 
 
 def _free(piece: PatternPiece, grain: Floats, *, with_rulings: bool) -> shapely.Geometry:
@@ -270,7 +290,7 @@ def _beside(piece: PatternPiece, lines: Sequence[str]) -> Lettering:
         start = corner + np.array((-_CLEAR, 0.5 * size[1]))
     rows, box = _turned(block, lines, corner, height, 0.0)
     way = shapely.shortest_line(shapely.Point(start), shapely.LinearRing(piece.cut_line))
-    return _with_lines(piece, rows, box, np.array(way.coords), piece.grain_line)
+    return _with_lines(piece, rows, box, np.array(way.coords), _grain_lines(piece)[0])
 
 
 def _with_lines(
