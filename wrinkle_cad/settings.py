@@ -162,9 +162,6 @@ AREA_FIRST_ORDER_PER_ERROR: Final = 500.0
 PATTERN_CORNER: Final = 0.5
 """rad; the outline of a pattern turns sharper than this at a corner, else it is a curve."""
 
-NOTCH_DEPTH_PER_ALLOWANCE: Final = 0.6
-"""A notch never eats more than this share of the seam allowance."""
-
 NOTCH_CLEARANCE: Final = 3.0
 """mm of seam between a notch and the next corner, at least."""
 

@@ -34,7 +34,9 @@ class Task:
     q: Floats
     """(n, 3) float64, mm."""
     criteria: tuple[Criterion, ...]
+    """What is minimized, the most important first."""
     search: Search
+    """``global`` or ``local``."""
     energy: int
     """HINGE or PAPER."""
     planarity: float
@@ -44,6 +46,7 @@ class Task:
     invalid_cost: float | None
     """Bending energy of an invalid bridge; None without a price."""
     is_closed: bool
+    """Whether the strip runs round."""
     give_up: float | None = None
     """mm of each rail that may be given up at each end; None where the ends are fixed."""
     unused_cost: float | None = None

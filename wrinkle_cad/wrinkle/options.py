@@ -69,7 +69,9 @@ class StripArguments(StripSettings):
     """What ``WrinkleStrip`` is called with."""
 
     p: object
+    """Rail P."""
     q: object
+    """Rail Q."""
     name: str = field(
         default=settings.STRIP_NAME,
         kw_only=True,

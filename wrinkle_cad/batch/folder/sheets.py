@@ -45,17 +45,14 @@ _COLUMNS: Final = (
 
 @dataclass(frozen=True, slots=True)
 class SheetsMade:
-    """What became of a batch's sheets.
-
-    Attributes:
-        said: how many there are and how full, on one line; empty when none are wanted.
-        notes: what was noticed while they were written.
-        failures: what is on none of them, and why; one line each.
-    """
+    """What became of a batch's sheets."""
 
     said: str = ""
+    """How many there are and how full, on one line; empty when none are wanted."""
     failures: tuple[str, ...] = ()
+    """What is on none of them, and why; one line each."""
     notes: tuple[str, ...] = ()
+    """What was noticed while they were written."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)

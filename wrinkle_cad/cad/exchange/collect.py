@@ -39,10 +39,15 @@ class Found:
     """A shape to be listed, before it is measured and numbered."""
 
     shape: TopoDS_Shape
+    """The kernel's shape."""
     name: str = ""
+    """Its name; empty without one."""
     color: Color | None = None
+    """Its color, or None."""
     is_free: bool = True
+    """Whether it is part of no other shape."""
     faces: Sequence[FaceStyle] = ()
+    """Names and colors of single faces."""
 
 
 def take_apart(

@@ -25,12 +25,19 @@ class CarveRequest:
     """What was asked for; enough to carve another body in the same way."""
 
     p: Directrix
+    """Rail P."""
     q: Directrix
+    """Rail Q."""
     margin: float
+    """mm; how far the opening reaches beyond the rails."""
     fade: float
+    """The share of the rails over which the margin grows and dies away."""
     limit: float
+    """mm; how far a rail may lie from the upper."""
     join: float
+    """mm; faces of the upper this near to each other are joined."""
     allow_split: bool
+    """Whether the upper may fall apart."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)

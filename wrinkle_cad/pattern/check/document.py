@@ -30,7 +30,9 @@ class OpenedDxf:
     """A document and what had to be mended to get it, one sentence each."""
 
     document: DxfDocument
+    """The document."""
     problems: tuple[str, ...]
+    """What had to be mended, one sentence each."""
 
 
 def open_dxf(path: Path) -> OpenedDxf:

@@ -27,23 +27,26 @@ _SPLINE_POINTS: Final = 20_000
 
 @dataclass(frozen=True, slots=True, eq=False)
 class FileLine:
-    """A line of any kind: (k, 2) points; a closed one does not repeat its first point.
-
-    Attributes:
-        height: largest distance from the plane z = 0.
-        vertex_count: as the file states them, not those of a curve taken apart.
-        stated: (s, 2) the vertices that the file states; none for arcs and splines.
-    """
+    """A line of any kind: (k, 2) points; a closed one does not repeat its first point."""
 
     space: str
+    """What it stands in: a block's name, or ``ENTITIES``."""
     layer: str
+    """Its layer."""
     kind: str
+    """Its kind of entity, as DXF calls it."""
     points: Floats
+    """(k, 2) in the file's unit; a closed line does not repeat its first point."""
     is_closed: bool
+    """Whether its end is its start."""
     vertex_count: int
+    """Vertices as the file states them, not those of a curve taken apart."""
     height: float
+    """Largest distance from the plane z = 0."""
     is_curved: bool
+    """Whether it is a curve taken apart."""
     stated: Floats
+    """(s, 2) the vertices that the file states; none for arcs and splines."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -51,10 +54,15 @@ class FileMark:
     """Anything that is no line: a text, a point, a hatch. ``text`` is empty for the others."""
 
     space: str
+    """What it stands in: a block's name, or ``ENTITIES``."""
     layer: str
+    """Its layer."""
     kind: str
+    """Its kind of entity, as DXF calls it."""
     position: tuple[float, float]
+    """(x, y)."""
     text: str
+    """What it says; empty where it is no text."""
 
 
 def line_of(entity: DXFEntity, space: str) -> FileLine | None:

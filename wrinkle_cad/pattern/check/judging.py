@@ -35,23 +35,22 @@ _UNUSED_LAYERS: Final = ("0", "defpoints")
 
 @dataclass(frozen=True, slots=True, eq=False)
 class CheckReport:
-    """What was found in a file.
-
-    Attributes:
-        name: of the file. ``release``: of DXF. ``format``: ``drawing`` or ``pieces``.
-        cut_layers: the layers whose lines were taken as contours to cut.
-        contour_count: lines on them.
-        findings: one of each kind, errors first, then warnings, then what is no fault.
-        counts: how many there are of each kind.
-    """
+    """What was found in a file."""
 
     name: str
+    """Of the file."""
     release: str
+    """Of DXF."""
     format: str
+    """``drawing`` or ``pieces``."""
     cut_layers: tuple[str, ...]
+    """The layers whose lines were taken as contours to cut."""
     contour_count: int
+    """Lines on them."""
     findings: tuple[Finding, ...]
+    """One of each kind, errors first, then warnings, then what is no fault."""
     counts: tuple[int, ...]
+    """How many there are of each kind."""
 
     @property
     def is_clean(self) -> bool:

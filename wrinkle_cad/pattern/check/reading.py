@@ -34,43 +34,47 @@ class FileInsert:
     """A block's insertion: (x, y, z), and whether it is neither turned nor scaled."""
 
     block: str
+    """The block's name."""
     layer: str
+    """Its layer."""
     position: tuple[float, float, float]
+    """(x, y, z)."""
     is_plain: bool
+    """Whether it is neither turned nor scaled."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class DxfContent:
-    """What a DXF file holds.
-
-    Attributes:
-        release: "R12", "R2000", ...
-        unit: ``$INSUNITS``, or None where the release has none.
-        is_metric: ``$MEASUREMENT``, or None.
-        layers: names in the layer table. ``hidden_layers``: those switched off or frozen.
-        blocks: names of the blocks that are no layouts.
-        lines, marks, inserts: what is drawn.
-        paper_layers: the layer of each line in a paper space.
-        turned: (kind, layer) of each line whose plane is not that of the drawing.
-        unusable: what has no place in the plane, one sentence each.
-        is_blocks: whether it is a file of pattern pieces.
-        problems: what the reader had to mend, one sentence each.
-    """
+    """What a DXF file holds."""
 
     release: str
+    """"R12", "R2000", ..."""
     unit: int | None
+    """``$INSUNITS``, or None where the release has none."""
     is_metric: bool | None
+    """``$MEASUREMENT``, or None."""
     layers: tuple[str, ...]
+    """Names in the layer table."""
     hidden_layers: tuple[str, ...]
+    """Those switched off or frozen."""
     blocks: tuple[str, ...]
+    """Names of the blocks that are no layouts."""
     lines: tuple[FileLine, ...]
+    """What is drawn: lines of every kind."""
     marks: tuple[FileMark, ...]
+    """What is drawn and is no line."""
     inserts: tuple[FileInsert, ...]
+    """Where blocks are inserted."""
     paper_layers: tuple[str, ...]
+    """The layer of each line in a paper space."""
     turned: tuple[tuple[str, str], ...]
+    """(kind, layer) of each line whose plane is not that of the drawing."""
     unusable: tuple[str, ...]
+    """What has no place in the plane, one sentence each."""
     is_blocks: bool
+    """Whether it is a file of pattern pieces."""
     problems: tuple[str, ...]
+    """What the reader had to mend, one sentence each."""
 
 
 def read_dxf(path: Path) -> DxfContent:

@@ -21,8 +21,11 @@ class Stroke:
     """A polyline: (k, 2) mm; a closed one does not repeat its first point."""
 
     role: Role
+    """What it stands for."""
     points: Floats
+    """(k, 2) mm; a closed one does not repeat its first point."""
     is_closed: bool = False
+    """Whether its end is its start."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -30,7 +33,9 @@ class Spot:
     """A point: (2,) mm."""
 
     role: Role
+    """What it stands for."""
     position: Floats
+    """(2,) mm."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -38,10 +43,15 @@ class Label:
     """One line of text: the left end of its base line (2,) mm, its height in mm, angle in rad."""
 
     role: Role
+    """What it stands for."""
     text: str
+    """What it says."""
     position: Floats
+    """(2,) mm; the left end of its base line."""
     height: float
+    """mm of a capital letter."""
     angle: float = 0.0
+    """rad, counter-clockwise."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -49,8 +59,11 @@ class Drawing:
     """All that is drawn for one piece."""
 
     strokes: tuple[Stroke, ...]
+    """Its lines."""
     spots: tuple[Spot, ...]
+    """Its points."""
     labels: tuple[Label, ...]
+    """Its texts."""
 
 
 def draw(piece: PatternPiece, *, texts: Sequence[str] | None = None) -> Drawing:

@@ -39,15 +39,12 @@ CURVES: Final[tuple[str, ...]] = get_args(Curves)
 
 @dataclass(frozen=True, slots=True, eq=False)
 class DxfFile:
-    """A finished file in memory.
-
-    Attributes:
-        content: its bytes, 7-bit ASCII, the same for the same pieces on every machine.
-        findings: texts that had to be changed, and what its readers may not like.
-    """
+    """A finished file in memory."""
 
     content: bytes
+    """Its bytes, 7-bit ASCII, the same for the same pieces on every machine."""
     findings: tuple[Finding, ...]
+    """Texts that had to be changed, and what its readers may not like."""
 
 
 def dxf_file(

@@ -43,32 +43,26 @@ _LAYER_NAME: Final = re.compile(r"[A-Za-z0-9_$-]{1,31}")
 
 @dataclass(frozen=True, slots=True)
 class LayerStyle:
-    """How one kind of line is drawn.
-
-    Attributes:
-        layer: its layer, a name that DXF R12 accepts.
-        color: AutoCAD color index 1...255 (7 is black on white).
-        line_type: a key of ``LINE_TYPES``.
-    """
+    """How one kind of line is drawn."""
 
     layer: str
+    """Its layer, a name that DXF R12 accepts."""
     color: int = 7
+    """AutoCAD color index 1...255 (7 is black on white)."""
     line_type: str = "CONTINUOUS"
+    """A key of ``LINE_TYPES``."""
 
 
 @dataclass(frozen=True, slots=True)
 class Profile:
-    """A named map from roles to layers.
-
-    Attributes:
-        name: ``cutter``, ``aama``, ``astm`` or the user's own.
-        styles: role to style; a role that is missing is not written.
-        is_blocks: pieces are blocks as in AAMA-292 and ASTM D6673, not plain entities.
-    """
+    """A named map from roles to layers."""
 
     name: str
+    """``cutter``, ``aama``, ``astm`` or the user's own."""
     styles: Mapping[Role, LayerStyle]
+    """Role to style; a role that is missing is not written."""
     is_blocks: bool = False
+    """Pieces are blocks as in AAMA-292 and ASTM D6673, not plain entities."""
 
 
 _CUTTER: Final[Mapping[Role, LayerStyle]] = MappingProxyType(

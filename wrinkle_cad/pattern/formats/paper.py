@@ -33,20 +33,18 @@ _ROOM: Final = 2.0
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Group:
-    """Pieces on the pages of one plane.
-
-    Attributes:
-        pieces: moved into the plane.
-        page: (2,) mm, size of a page.
-        columns, rows: of pages.
-        pages: (column, row) of those with anything on them, from the top left.
-    """
+    """Pieces on the pages of one plane."""
 
     pieces: tuple[PatternPiece, ...]
+    """Moved into the plane."""
     page: Floats
+    """(2,) mm, size of a page."""
     columns: int
+    """How many pages stand beside each other."""
     rows: int
+    """How many stand above each other."""
     pages: tuple[tuple[int, int], ...]
+    """(column, row) of those with anything on them, from the top left."""
 
     @property
     def window(self) -> Floats:

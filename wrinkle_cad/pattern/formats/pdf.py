@@ -52,8 +52,11 @@ class PdfFile:
     """A finished file in memory: its bytes, its pages, and which texts had to be changed."""
 
     content: bytes
+    """Its bytes."""
     page_count: int
+    """How many pages it has."""
     findings: tuple[Finding, ...]
+    """Texts that had to be changed."""
 
 
 def pdf_file(

@@ -31,17 +31,14 @@ _AWAY: Final = (10.0, 25.0, 60.0, 150.0)
 
 @dataclass(frozen=True, slots=True, eq=False)
 class SheetTexts:
-    """What is written of a piece on a sheet.
-
-    Attributes:
-        inside: the texts in the piece, none where it is too narrow.
-        beside: its name in the waste, None where it is not needed or has no room either.
-        leader: from there to the piece.
-    """
+    """What is written of a piece on a sheet."""
 
     inside: tuple[str, ...]
+    """The texts in the piece, none where it is too narrow."""
     beside: Label | None = None
+    """Its name in the waste, None where it is not needed or has no room either."""
     leader: Stroke | None = None
+    """From there to the piece."""
 
 
 def sheet_texts(

@@ -23,32 +23,36 @@ Indices = npt.NDArray[np.int64]
 
 @dataclass(frozen=True, slots=True, eq=False)
 class FlatStrip:
-    """A flat strip with what a piece needs to know of its shape in space.
-
-    Attributes:
-        p, q: (m, 2), (n, 2) mm, flat samples. ``p_space``, ``q_space``: the same in space.
-        p_line, q_line: (k, 2), (l, 2) mm, flat rails through all samples.
-        p_arc, q_arc: (k,), (l,) mm, arc length in space at each point of the lines.
-        p_index, q_index: (m,), (n,) where the samples stand in the lines.
-        bridges: (b, 2) pairs of sample indices, from the first to the last ruling.
-        fold: (b,) rad, signed; 0 at the first and the last bridge of the whole strip.
-        starts_at_cut, ends_at_cut: whether an end is where a longer strip was cut apart.
-    """
+    """A flat strip with what a piece needs to know of its shape in space."""
 
     p: Floats
+    """(m, 2) mm, flat samples of P."""
     q: Floats
+    """(n, 2) mm, flat samples of Q."""
     p_space: Floats
+    """(m, 3) mm, the samples of P in space."""
     q_space: Floats
+    """(n, 3) mm, the samples of Q in space."""
     p_line: Floats
+    """(k, 2) mm, flat rail P through all samples."""
     q_line: Floats
+    """(l, 2) mm, flat rail Q through all samples."""
     p_arc: Floats
+    """(k,) mm, arc length in space at each point of ``p_line``."""
     q_arc: Floats
+    """(l,) mm, likewise of ``q_line``."""
     p_index: Indices
+    """(m,) where the samples stand in ``p_line``."""
     q_index: Indices
+    """(n,) where the samples stand in ``q_line``."""
     bridges: Indices
+    """(b, 2) pairs of sample indices, from the first to the last ruling."""
     fold: Floats
+    """(b,) rad, signed; 0 at the first and the last bridge of the whole strip."""
     starts_at_cut: bool = False
+    """Whether its start is where a longer strip was cut apart."""
     ends_at_cut: bool = False
+    """Whether its end is."""
 
     def run(self, first: int, last: int) -> FlatStrip:
         """Returns the part between two bridges, ``first < last``, in the same place."""

@@ -52,40 +52,34 @@ _HOLE: Final = 1.0
 
 @dataclass(frozen=True, slots=True, eq=False)
 class TextRow:
-    """One line of text.
-
-    Attributes:
-        text: as the piece has it.
-        position: (2,) mm, the left end of its base line.
-        height: mm of a capital letter.
-        angle: rad, counter-clockwise.
-    """
+    """One line of text."""
 
     text: str
+    """As the piece has it."""
     position: Floats
+    """(2,) mm, the left end of its base line."""
     height: float
+    """mm of a capital letter."""
     angle: float
+    """rad, counter-clockwise."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Lettering:
-    """Where the texts of a piece stand.
-
-    Attributes:
-        rows: one for each text.
-        box: (4, 2) mm, the corners of the block around them.
-        leader: (2, 2) mm from the block to the cut line, None where it stands inside.
-        grain_line: (2, 2) mm, moved or shortened to make room.
-        rulings: (k, 2) mm each, broken around the block and the grain line.
-        ruling_fold: (r,) rad, of each of them.
-    """
+    """Where the texts of a piece stand."""
 
     rows: tuple[TextRow, ...]
+    """One for each text."""
     box: Floats
+    """(4, 2) mm, the corners of the block around them."""
     leader: Floats | None
+    """(2, 2) mm from the block to the cut line, None where it stands inside."""
     grain_line: Floats
+    """(2, 2) mm, moved or shortened to make room."""
     rulings: tuple[Floats, ...]
+    """(k, 2) mm each, broken around the block and the grain line."""
     ruling_fold: tuple[float, ...]
+    """(r,) rad, of each of them."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -43,19 +43,16 @@ _SAME_ARC: Final = 1e-3
 
 @dataclass(frozen=True, slots=True, eq=False)
 class StripParts:
-    """A flat strip, whole and as the parts that do not overlap themselves.
-
-    Attributes:
-        name: what its piece is called.
-        strip: the whole strip at its neutral layer.
-        parts: one, or more where it was split.
-        turned_over: whether the side that ``p' x (q - p)`` points away from is the right one.
-    """
+    """A flat strip, whole and as the parts that do not overlap themselves."""
 
     name: str
+    """What its piece is called."""
     strip: FlatStrip
+    """The whole strip at its neutral layer."""
     parts: tuple[FlatStrip, ...]
+    """One, or more where it was split."""
     turned_over: bool
+    """Whether the side that ``p' x (q - p)`` points away from is the right one."""
 
     @property
     def corners(self) -> tuple[Floats, Floats]:
@@ -125,17 +122,14 @@ def strip_parts(
 
 @dataclass(frozen=True, slots=True, eq=False)
 class PieceDraft:
-    """A piece whose notches are not yet agreed on with the pieces that it is sewn to.
-
-    Attributes:
-        piece: with all notches that can stand on it.
-        refused: those that cannot.
-        turned_over: as in ``StripParts``.
-    """
+    """A piece whose notches are not yet agreed on with the pieces that it is sewn to."""
 
     piece: PatternPiece
+    """With all notches that can stand on it."""
     refused: tuple[Refusal, ...]
+    """Those that cannot."""
     turned_over: bool
+    """As in ``StripParts``."""
 
 
 def draft_pieces(parts: StripParts, chosen: PieceSettings) -> tuple[PieceDraft, ...]:

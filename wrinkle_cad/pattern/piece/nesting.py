@@ -46,17 +46,14 @@ _HARDLY_SMALLER: Final = 0.9
 
 @dataclass(frozen=True, slots=True, eq=False)
 class NestedSheet:
-    """A sheet of material with pieces on it.
-
-    Attributes:
-        pieces: where they lie; (0, 0) is the sheet's lower left corner.
-        index: of each of them among the pieces that were given.
-        size: (2,) mm, length along the grain and width.
-    """
+    """A sheet of material with pieces on it."""
 
     pieces: tuple[PatternPiece, ...]
+    """Where they lie; (0, 0) is the sheet's lower left corner."""
     index: tuple[int, ...]
+    """Of each of them among the pieces that were given."""
     size: tuple[float, float]
+    """(2,) mm, length along the grain and width."""
 
     @property
     def used_length(self) -> float:

@@ -28,107 +28,104 @@ Bools = npt.NDArray[np.bool_]
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Notch:
-    """A mark at the cut line that meets its partner on the piece sewn to it.
-
-    Attributes:
-        side: index into ``SIDES``.
-        arc: mm along the rail in space, from the rail's start (for an end: along the ruling
-            from P). The partner stands at the same arc.
-        seam: (2,) mm, its foot on the sew line.
-        position: (2,) mm, on the cut line.
-        direction: (2,) unit vector from the cut line into the piece.
-        depth, width: mm. ``kind``: its form.
-        is_cut: False where there is no allowance to cut into: it is then drawn as a mark.
-    """
+    """A mark at the cut line that meets its partner on the piece sewn to it."""
 
     side: int
+    """Index into ``SIDES``."""
     arc: float
+    """mm along the rail in space, from the rail's start (for an end: along the ruling from P).
+    The partner stands at the same arc."""
     seam: Floats
+    """(2,) mm, its foot on the sew line."""
     position: Floats
+    """(2,) mm, on the cut line."""
     direction: Floats
+    """(2,) unit vector from the cut line into the piece."""
     depth: float
+    """mm."""
     width: float
+    """mm."""
     kind: NotchKind
+    """Its form."""
     is_cut: bool = True
+    """False where there is no allowance to cut into: it is then drawn as a mark."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Outline:
-    """A closed polygon, counter-clockwise, without a repeated last vertex.
-
-    Attributes:
-        points: (k, 2) mm.
-        sides: (k,) int8, ``SIDES`` index of the segment that starts at each vertex.
-        corners: (k,) bool, True at turn points, False where the outline is curved.
-    """
+    """A closed polygon, counter-clockwise, without a repeated last vertex."""
 
     points: Floats
+    """(k, 2) mm."""
     sides: Ints
+    """(k,) int8, ``SIDES`` index of the segment that starts at each vertex."""
     corners: Bools
+    """(k,) bool, True at turn points, False where the outline is curved."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Bends:
-    """Where a piece is folded, in the order from its start to its end.
-
-    Attributes:
-        lines: (b, 2, 2) mm from P to Q.
-        fold: (b,) rad, positive for a mountain as seen from the right side (down), negative for
-            a valley (up).
-        arcs: (b, 2) mm along P and Q in space, from their starts.
-        radius: (b,) mm; 0 where one bend stands for several rulings.
-        deviation: mm that the bends leave the curve by at most.
-    """
+    """Where a piece is folded, in the order from its start to its end."""
 
     lines: Floats
+    """(b, 2, 2) mm from P to Q."""
     fold: Floats
+    """(b,) rad, positive for a mountain as seen from the right side (down), negative for a
+    valley (up)."""
     arcs: Floats
+    """(b, 2) mm along P and Q in space, from their starts."""
     radius: Floats
+    """(b,) mm; 0 where one bend stands for several rulings."""
     deviation: float
+    """mm that the bends leave the curve by at most."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class PatternPiece:
-    """One piece of a pattern; every array is read-only and in mm.
-
-    Attributes:
-        name, size, quantity, material, tolerance: as the texts say.
-        cut: outline to be cut. ``sew``: outline to be sewn, inside or on the cut line.
-        cut_outs: (k, 2) polygons each, cut inside the cut line.
-        widths: allowance of each side in the order of ``SIDES``.
-        notches: sorted by side, then by arc.
-        grain_line: (2, 2) from tail to head. ``stretch_line``: the same or None.
-        rulings: (r, 2, 2) from P to Q. ``ruling_fold``: (r,) rad, positive for a mountain as
-            seen from the right side, negative for a valley.
-        drill_holes: (h, 2) centres.
-        bends: for makers who fold, None where they are not asked for.
-        p_span, q_span: (first, last) mm along the rails in space that this piece covers.
-        hand: the foot it is for.
-        is_mirrored: Q lies below P, as the strip was mirrored or its other side is the right one.
-        findings: what was noticed while making it.
-    """
+    """One piece of a pattern; every array is read-only and in mm."""
 
     name: str
+    """What it is called."""
     size: str
+    """Of the shoe, as the texts say."""
     quantity: int
+    """How many are to be cut."""
     material: str
+    """Its name, as the texts say."""
     tolerance: float
+    """mm; the chord tolerance of its outlines."""
     cut: Outline
+    """Outline to be cut."""
     sew: Outline
+    """Outline to be sewn, inside or on the cut line."""
     cut_outs: tuple[Floats, ...]
+    """(k, 2) polygons each, cut inside the cut line."""
     widths: PerSide
+    """Allowance of each side in the order of ``SIDES``."""
     notches: tuple[Notch, ...]
+    """Sorted by side, then by arc."""
     grain_line: Floats
+    """(2, 2) from tail to head."""
     stretch_line: Floats | None
+    """(2, 2) likewise, or None."""
     rulings: Floats
+    """(r, 2, 2) from P to Q."""
     ruling_fold: Floats
+    """(r,) rad, positive for a mountain as seen from the right side, negative for a valley."""
     drill_holes: Floats
+    """(h, 2) centres."""
     p_span: tuple[float, float]
+    """(first, last) mm along P in space that this piece covers."""
     q_span: tuple[float, float]
+    """(first, last) mm along Q in space that this piece covers."""
     hand: Hand | None = None
+    """The foot it is for."""
     is_mirrored: bool = False
+    """Q lies below P, as the strip was mirrored or its other side is the right one."""
     bends: Bends | None = None
+    """For makers who fold, None where they are not asked for."""
     findings: tuple[Finding, ...] = ()
+    """What was noticed while making it."""
 
     @property
     def cut_line(self) -> Floats:

@@ -33,8 +33,11 @@ class Refusal:
     """A notch that cannot stand: side index, mm along it, and what is in its way."""
 
     side: int
+    """Index into ``SIDES``."""
     arc: float
+    """mm along that side."""
     reason: str
+    """What is in its way."""
 
 
 def seam_arcs(

@@ -123,14 +123,6 @@ def segment_gaps(points: ArrayLike, starts: ArrayLike, ends: ArrayLike) -> Float
     return row_lengths(offset - np.clip(along, 0.0, 1.0)[..., None] * chord)
 
 
-def _row_products(first: Floats, second: Floats) -> Floats:
-    """(...) float64: scalar products of (..., d) vectors, summed in the order of coordinates."""
-    total: Floats = first[..., 0] * second[..., 0]
-    for axis in range(1, first.shape[-1]):
-        total = total + first[..., axis] * second[..., axis]
-    return total
-
-
 def turnings(points: ArrayLike) -> Floats:
     """Returns the angle by which a polyline in space turns at each vertex; 0 at both ends.
 
