@@ -21,6 +21,7 @@ from .closed_search import is_around
 from .closed_strip import closed_line
 from .curve.nearest import nearest_on_polyline
 from .curve.polyline import row_lengths
+from .places import place_text
 from .portable import dot
 
 Floats = npt.NDArray[np.float64]
@@ -32,8 +33,9 @@ class Constraints:
     """What every triangulation that is found must keep.
 
     Example:
-        >>> [words for words, _ in Constraints(pinned=((3, 4),), max_ruling=25.0).parts]
-        ['pinned ruling 1, from sample 3 of P to 4 of Q', 'max_ruling of 25 mm']
+        >>> p, q = np.array([[0.0, 0, 0], [4.0, 0, 0]]), np.array([[0.0, 3, 0], [4.0, 3, 0]])
+        >>> [words for words, _ in Constraints(pinned=((1, 0),), max_ruling=25.0).parts(p, q)]
+        ['pinned ruling 1 from (4.000, 0.000, 0.000) mm of P', 'max_ruling of 25 mm']
     """
 
     pinned: tuple[tuple[int, int], ...] = ()
@@ -47,10 +49,14 @@ class Constraints:
     fold_bound: float | None = None
     """rad; largest fold at an interior bridge."""
 
-    @property
-    def parts(self) -> tuple[tuple[str, Constraints], ...]:
-        """Each of them in words, and alone."""
-        return tuple(self._each())
+    def parts(self, p: Floats, q: Floats) -> tuple[tuple[str, Constraints], ...]:
+        """Each of them in words, and alone.
+
+        Args:
+            p: (m, 3) float64, mm; samples of directrix P.
+            q: (n, 3) float64, mm; samples of directrix Q.
+        """
+        return tuple(self._each(p, float(np.ptp(np.concatenate((p, q)), axis=0).max())))
 
     def together_with(self, other: Constraints) -> Constraints:
         """These constraints and others."""
@@ -62,15 +68,12 @@ class Constraints:
             fold_bound=_smaller(self.fold_bound, other.fold_bound),
         )
 
-    def _each(self) -> Iterator[tuple[str, Constraints]]:
+    def _each(self, p: Floats, size: float) -> Iterator[tuple[str, Constraints]]:
         for k, (i, j) in enumerate(self.pinned):
-            words = f"pinned ruling {k + 1}, from sample {i} of P to {j} of Q"
+            words = f"pinned ruling {k + 1} from {place_text(p[i], size)} of P"
             yield words, Constraints(pinned=((i, j),))
-        for k, (i, last_i, j, last_j) in enumerate(self.forbidden):
-            words = (
-                f"forbidden stretch {k + 1}, from samples {i} to {last_i} of P to {j} to"
-                f" {last_j} of Q"
-            )
+        for i, last_i, j, last_j in self.forbidden:
+            words = f"the forbidden stretch from {place_text(p[i], size)} of P on"
             yield words, Constraints(forbidden=((i, last_i, j, last_j),))
         if self.max_lean is not None:
             words = f"max_lean of {math.degrees(self.max_lean):.4g} degrees"

@@ -70,18 +70,22 @@ def is_kept(found: FoundStrip, constraints: Constraints, bars: Bars) -> bool:
     return math.cos(float(np.abs(found.fold).max())) >= bars.least_cosine - 1e-12
 
 
-def refuse(constraints: Constraints, search: Search) -> NoReturn:
+def refuse(constraints: Constraints, p: Floats, q: Floats, search: Search) -> NoReturn:
     """Refuses constraints that every triangulation breaks.
 
     Args:
         constraints: what was asked for.
+        p: (m, 3) float64, mm; samples of directrix P.
+        q: (n, 3) float64, mm; samples of directrix Q.
         search: the best triangulation under other constraints, and whether it keeps them.
 
     Raises:
         InputError: one sentence names the fewest constraints that fail together.
     """
-    failing = list(constraints.parts)
-    for part in constraints.parts:
+    free = search(Constraints())[0]
+    parts = constraints.parts(p, q)
+    failing = list(parts)
+    for part in parts:
         rest = [other for other in failing if other is not part]
         if not search(_joined(rest))[1]:
             failing = rest
@@ -92,7 +96,7 @@ def refuse(constraints: Constraints, search: Search) -> NoReturn:
             " or drop it."
         )
     ((words, alone),) = failing
-    raise InputError(_alone(words, alone, search(Constraints())[0]))
+    raise InputError(_alone(words, alone, free))
 
 
 def _joined(parts: list[tuple[str, Constraints]]) -> Constraints:

@@ -11,7 +11,7 @@ Kinds of gap:
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, Final, Literal
 
 import numpy as np
@@ -21,6 +21,7 @@ from wrinkle_cad.settings import TWIST_PER_DEFECT
 from wrinkle_cad.strip.portable import atan2
 
 from .curve.polyline import segment_lengths
+from .cut_open import cut_at
 from .sightlines import BEFORE_P, BEFORE_Q, NEXT_P, NEXT_Q, look_along_path, padded_banks
 from .triangulation import Triangulation
 
@@ -80,14 +81,50 @@ class Gap:
 def find_gaps(triangulation: Triangulation) -> tuple[Gap, ...]:
     """Returns the runs of invalid interior bridges, in order along the strip.
 
+    A run of a closed strip may go on past its last bridge, which is its first one again; its
+    numbers then do so too, and if no bridge is valid there is one run of them all.
+
     Example:
         >>> from wrinkle_cad.strip import triangulate
         >>> flat = triangulate([[0, 0, 0], [1, 0, 0], [2, 0, 0]], [[0, 1, 0], [1, 1, 0], [2, 1, 0]])
         >>> find_gaps(flat)
         ()
     """
+    count = len(triangulation.steps)
+    if triangulation.is_closed:
+        return _gaps_around(triangulation, count)
     invalid = ~triangulation.valid
     invalid[[0, -1]] = False
+    return _gaps_in(triangulation, invalid)
+
+
+def _gaps_around(closed: Triangulation, count: int) -> tuple[Gap, ...]:
+    """The gaps of a closed strip, looked for from a valid bridge on, around to it again."""
+    valid = np.flatnonzero(closed.valid[:-1])
+    first = int(valid[0]) if len(valid) else 0
+    # Three turns, so that every bridge of the one that is looked at has both its neighbours.
+    around = cut_at(closed, first, turns=3)
+    invalid = ~around.valid
+    invalid[:count] = invalid[2 * count :] = False
+    shift = closed.bridges[first]
+    m, n = len(closed.p), len(closed.q)
+
+    def placed(at: tuple[int, int]) -> tuple[int, int]:
+        return (at[0] + int(shift[0])) % m, (at[1] + int(shift[1])) % n
+
+    return tuple(
+        replace(
+            gap,
+            first=(gap.first - count + first) % count,
+            last=(gap.first - count + first) % count + gap.last - gap.first,
+            start=placed(gap.start),
+            end=placed(gap.end),
+        )
+        for gap in _gaps_in(around, invalid)
+    )
+
+
+def _gaps_in(triangulation: Triangulation, invalid: Bools) -> tuple[Gap, ...]:
     edges = np.flatnonzero(np.diff(invalid)) + 1
     shares = [_shares(triangulation, rail) for rail in (0, 1)]
     defect = _defects(triangulation)
@@ -104,7 +141,7 @@ def covered_lengths(triangulation: Triangulation, marked: npt.ArrayLike) -> tupl
 
     Args:
         triangulation: the strip.
-        marked: (m+n-1,) bool; for instance `~triangulation.valid & ~triangulation.inflection`.
+        marked: a bool per bridge; for instance `~triangulation.valid & ~triangulation.inflection`.
 
     Example:
         >>> from wrinkle_cad.strip import triangulate
@@ -120,8 +157,11 @@ def covered_lengths(triangulation: Triangulation, marked: npt.ArrayLike) -> tupl
 def _shares(triangulation: Triangulation, rail: int) -> Floats:
     """What each bridge covers of a rail, (k,) float64, mm."""
     points = triangulation.q if rail else triangulation.p
-    half = 0.5 * segment_lengths(points[triangulation.bridges[:, rail]])
+    half = 0.5 * segment_lengths(points[triangulation.bridges[:, rail] % len(points)])
     shares: Floats = np.append(half, 0.0) + np.append(0.0, half)
+    if triangulation.is_closed:
+        # The first bridge stands for the last one too.
+        shares[0], shares[-1] = shares[0] + shares[-1], 0.0
     return shares
 
 

@@ -278,7 +278,7 @@ def triangulate(
 
     found, has_all = best(constraints)
     if not has_all:
-        refuse(constraints, best)
+        refuse(constraints, p, q, best)
     return found
 
 

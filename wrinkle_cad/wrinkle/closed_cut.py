@@ -1,23 +1,34 @@
 """A closed strip, found over all its seams and then cut at a ruling to be laid flat.
 
 The search knows no seam; a sheet does. So the strip is cut where that is shortest to sew, at its
-shortest bridge that does not divide a cone, and both rails are started again there.
+shortest bridge that does not divide a cone, or where the user says, or where the flat strip fits
+the smallest sheet; and both rails are started again there.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Final, Literal
 
 import numpy as np
+import shapely
 from numpy.typing import NDArray
 
 from wrinkle_cad.cad.rail.closed_starts import started_at
 from wrinkle_cad.cad.rail.directrix import Directrix
 from wrinkle_cad.strip.curve.polyline import row_lengths
 from wrinkle_cad.strip.curve.sampling import Samples
-from wrinkle_cad.strip.triangulation import Triangulation, measured
+from wrinkle_cad.strip.cut_open import cut_at
+from wrinkle_cad.strip.flat.overlap import is_overlapping
+from wrinkle_cad.strip.flat.unrolling import unroll
+from wrinkle_cad.strip.triangulation import Triangulation
 
 Floats = NDArray[np.float64]
+Cut = Literal["shortest", "best"] | tuple[int, int]
+"""Where to cut: by a rule, or at the bridge between two samples."""
+
+SAME: Final = 1e-9
+"""Lengths and sheets that differ by a smaller share are equal but for round-off."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -37,39 +48,63 @@ def without_end(samples: Samples) -> Floats:
     return samples.points[:-1]
 
 
-def cut_at_shortest(
+def cut_open(
     closed: Triangulation,
     rails: tuple[Directrix, Directrix],
     samples: tuple[Samples, Samples],
+    cut: Cut,
 ) -> FoundStrip:
-    """Returns a closed strip cut at its shortest bridge between two faces; of equal ones the first.
+    """Returns a closed strip cut at one of its bridges.
 
     Args:
         closed: the best triangulation over all starting bridges, of samples without their ends.
         rails: P and Q, closed and alike.
         samples: of P and of Q, with the first point repeated at the end.
+        cut: ``shortest``: the shortest bridge between two faces, of equal ones the first; ``best``:
+            the bridge between two faces at which the flat strip fits the smallest rectangle without
+            covering itself, the shortest of those; or i, j of a bridge that the strip has.
     """
-    i, j = closed.bridges[:-1].T
+    at = _bridge_to_cut(closed, cut)
     m, n = len(closed.p), len(closed.q)
-    lengths = row_lengths(closed.p[i % m] - closed.q[j % n])
-    lengths[_is_inside_fan(closed)] += float(lengths.max())
-    shortest = float(lengths.min())
-    at = int(np.flatnonzero(lengths <= shortest + 1e-9 * max(shortest, 1.0))[0])
-    cuts = int(i[at]) % m, int(j[at]) % n
-    turned = [_started(rail, own, cut) for rail, own, cut in zip(rails, samples, cuts, strict=True)]
+    i, j = closed.bridges[at].tolist()
+    turned = [
+        _started(rail, own, start)
+        for rail, own, start in zip(rails, samples, (i % m, j % n), strict=True)
+    ]
     (p, p_samples), (q, q_samples) = turned
-    triangulation = measured(
-        p_samples.points,
-        q_samples.points,
-        np.roll(closed.steps, -at),
-        planarity=closed.planarity,
-        criteria=closed.criteria,
-        search=closed.search,
-        energy=closed.energy,
-        price=closed.price,
-        least_bending=closed.least_bending,
-    )
-    return FoundStrip((p, q), (p_samples, q_samples), triangulation)
+    return FoundStrip((p, q), (p_samples, q_samples), cut_at(closed, at))
+
+
+def _bridge_to_cut(closed: Triangulation, cut: Cut) -> int:
+    """The number of the bridge where a closed strip is cut."""
+    i, j = closed.bridges[:-1].T
+    i, j = i % len(closed.p), j % len(closed.q)
+    if not isinstance(cut, str):
+        return int(np.flatnonzero((i == cut[0]) & (j == cut[1]))[0])
+    lengths = row_lengths(closed.p[i] - closed.q[j])
+    lengths[_is_inside_fan(closed)] += float(lengths.max())
+    if cut == "best":
+        lengths = _among_best(closed, lengths)
+    shortest = float(lengths.min())
+    return int(np.flatnonzero(lengths <= shortest + SAME * max(shortest, 1.0))[0])
+
+
+def _among_best(closed: Triangulation, lengths: Floats) -> Floats:
+    """The lengths of bridges, infinite where the flat strip needs a larger sheet."""
+    twice = cut_at(closed, 0, turns=2)
+    flat, count = unroll(twice), len(closed.steps)
+    starts, ends = twice.bridges[:count], twice.bridges[count : 2 * count] + 1
+    sheets = np.full(count, np.inf)
+    pieces = []
+    for (i, j), (last_i, last_j) in zip(starts.tolist(), ends.tolist(), strict=True):
+        pieces.append((flat.p[i:last_i], flat.q[j:last_j]))
+        outline = shapely.MultiPoint(np.concatenate(pieces[-1]))
+        sheets[len(pieces) - 1] = outline.minimum_rotated_rectangle.area
+    sheets[_is_inside_fan(closed)] += 2.0 * float(sheets.max())
+    for at in np.argsort(sheets, kind="stable").tolist():
+        if not is_overlapping(*pieces[at]):
+            return np.where(np.abs(sheets - sheets[at]) <= SAME * sheets[at], lengths, np.inf)
+    return lengths
 
 
 def _is_inside_fan(closed: Triangulation) -> NDArray[np.bool_]:

@@ -2,22 +2,34 @@
 
 from __future__ import annotations
 
-from functools import partial
-from typing import Final
+from collections.abc import Callable
+from dataclasses import replace
+from typing import Any, Final
+
+import numpy as np
+from numpy.typing import NDArray
 
 from wrinkle_cad import settings
 from wrinkle_cad.cad.rail.apart import check_apart
 from wrinkle_cad.cad.rail.closed_starts import are_closed, started_alike
 from wrinkle_cad.cad.rail.directrix import Directrix
 from wrinkle_cad.cad.rail.joint_samples import mended_between, sampled_alone, sampled_jointly
+from wrinkle_cad.cad.rail.trimming import trimmed
 from wrinkle_cad.strip.curve.polyline import polyline_length
 from wrinkle_cad.strip.curve.sampling import Samples
 from wrinkle_cad.strip.flat.turning import without_turning_back
 from wrinkle_cad.strip.partners import Pair, Search
 from wrinkle_cad.strip.triangulation import Triangulation, triangulate
+from wrinkle_cad.strip.ways import checked_give_up
 
-from .closed_cut import FoundStrip, cut_at_shortest, without_end
+from .closed_cut import Cut, FoundStrip, cut_open, without_end
 from .options import StripSettings
+from .ruling_control import RulingControl, control_of
+
+Floats = NDArray[np.float64]
+
+NOTHING_UNUSED: Final = (0.0, 0.0, 0.0, 0.0)
+"""A strip that has all of its rails."""
 
 SAME_BENDING: Final = 1e-9
 """Energies closer than this share of themselves are equal: round-off is not to choose samples."""
@@ -40,36 +52,85 @@ def found_between(p: Directrix, q: Directrix, chosen: StripSettings) -> FoundStr
             rail, or an option that cannot be used.
     """
     is_closed = are_closed(p, q)
+    give_up = checked_give_up(chosen.ends, chosen.give_up)
     rails = started_alike(p, q) if is_closed else (p, q)
+    control = control_of(chosen, p, q, closed=is_closed)
     alone = sampled_alone(*rails, chosen.tolerance, chosen.max_chord)
-    samples = sampled_jointly(*rails, alone, chosen.tolerance)
+    samples = control.marked(rails, sampled_jointly(*rails, alone, chosen.tolerance))
     check_apart(*rails, *samples)
-    search = partial(
-        triangulate,
-        criteria=chosen.criteria,
-        search=chosen.search,
-        energy=chosen.energy,
-        price=chosen.price,
-        planarity=(
-            settings.planarity_from(chosen.tolerance)
-            if chosen.planarity is None
-            else chosen.planarity
-        ),
-    )
-    # The local search chooses no seam: there the strip is cut where its rails were started.
-    if is_closed and chosen.search == "global":
-        around = search(without_end(samples[0]), without_end(samples[1]), closed=True)
-        found = cut_at_shortest(around, rails, samples)
+    search = _search(chosen, control)
+    unused = NOTHING_UNUSED
+    if is_closed:
+        around = search(
+            without_end(samples[0]),
+            without_end(samples[1]),
+            closed=True,
+            ends=chosen.ends,
+            give_up=give_up,
+        )
+        found = cut_open(around, rails, samples, _cut_of(chosen, control, samples))
         rails, samples, triangulation = found.rails, found.samples, found.triangulation
+    elif chosen.ends == "free":
+        rails, samples, triangulation = _with_free_ends(search, rails, samples, give_up)
+        unused = triangulation.unused
     else:
-        triangulation, samples = _better(search, samples, alone)
+        triangulation, samples = _better(search, samples, control.marked(rails, alone))
     triangulation, samples = without_turning_back(
         *mended_between(triangulation, rails, samples, chosen.tolerance, search),
         (rails[0].point_at, rails[1].point_at),
         search,
         tolerance=settings.FLAT_LINE_PER_TOLERANCE * chosen.tolerance,
     )
-    return FoundStrip(rails, samples, triangulation)
+    return FoundStrip(rails, samples, replace(triangulation, unused=unused))
+
+
+def _search(chosen: StripSettings, control: RulingControl) -> Callable[..., Triangulation]:
+    """How the best triangulation between two rows of samples is found under what was asked."""
+    is_derived = chosen.planarity is None
+    planarity = settings.planarity_from(chosen.tolerance) if is_derived else chosen.planarity
+
+    def search(p: Floats, q: Floats, *, closed: bool = False, **more: Any) -> Triangulation:
+        return triangulate(
+            p,
+            q,
+            criteria=chosen.criteria,
+            search=chosen.search,
+            energy=chosen.energy,
+            price=chosen.price,
+            planarity=planarity,
+            closed=closed,
+            **control.asked_of(p, q, closed=closed),
+            **more,
+        )
+
+    return search
+
+
+def _cut_of(chosen: StripSettings, control: RulingControl, samples: Pair) -> Cut:
+    """Where a closed strip is to be cut: a rule, or the samples of P and Q."""
+    if isinstance(chosen.cut, str):
+        return chosen.cut
+    asked = control.asked_of(*map(without_end, samples), closed=True)["pinned"]
+    i, j = asked[-1]
+    return i, j
+
+
+def _with_free_ends(
+    search: Callable[..., Triangulation],
+    rails: tuple[Directrix, Directrix],
+    samples: Pair,
+    give_up: float | None,
+) -> tuple[tuple[Directrix, Directrix], Pair, Triangulation]:
+    """The best strip between parts of the rails, and these parts."""
+    found = search(samples[0].points, samples[1].points, ends="free", give_up=give_up)
+    cut = [
+        trimmed(rail, own, first, first + len(points) - 1)
+        for rail, own, first, points in zip(
+            rails, samples, found.first_samples, (found.p, found.q), strict=True
+        )
+    ]
+    (p, p_samples), (q, q_samples) = cut
+    return (p, q), (p_samples, q_samples), replace(found, first_samples=(0, 0))
 
 
 def _better(search: Search, jointly: Pair, alone: Pair) -> tuple[Triangulation, Pair]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field, fields
-from typing import ClassVar, Final
+from typing import ClassVar, Final, Literal
 
 from wrinkle_cad import settings
 from wrinkle_cad.options.checking import check_options
@@ -12,6 +12,9 @@ from wrinkle_cad.pattern.piece.options import Direction, PieceOptions
 
 _OF_PIECES: Final = {field.name: field.metadata for field in fields(PieceOptions)}
 """What is said of an option that a strip and its pieces share."""
+
+Cut = Literal["shortest", "best"] | tuple[float, float]
+"""Where a closed strip is cut open."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -57,6 +60,79 @@ class StripSettings:
             "where the strip bends least; none: any bending",
             least=0.0,
             most=settings.LARGEST_PRICE,
+        ),
+    )
+
+    pinned: tuple[tuple[float, ...], ...] = field(
+        default=(),
+        metadata=option(
+            "a ruling that must be there: mm along P and along Q, or the points x, y, z of its two"
+            " ends; repeatable",
+            unit="mm",
+            least=-1e9,
+            most=1e9,
+            flag="--pin",
+            metavar="P,Q",
+        ),
+    )
+    forbidden: tuple[tuple[float, float, float, float], ...] = field(
+        default=(),
+        metadata=option(
+            "no ruling goes from this stretch of P, in mm along it, to that of Q; repeatable",
+            unit="mm",
+            least=0.0,
+            most=1e9,
+            flag="--forbid",
+            metavar="P1,P2,Q1,Q2",
+        ),
+    )
+    max_lean_deg: float | None = field(
+        default=None,
+        metadata=option(
+            "largest angle of a ruling to the shortest crossing of the strip at one of its ends",
+            unit="deg",
+            above=0.0,
+            most=90.0,
+            when_none="any",
+            flag="--max-lean",
+        ),
+    )
+    max_ruling: float | None = field(
+        default=None,
+        metadata=option("longest ruling", unit="mm", above=0.0, most=1e9, when_none="any"),
+    )
+    fold_bound_deg: float | None = field(
+        default=None,
+        metadata=option(
+            "largest fold at a ruling that the search may choose",
+            unit="deg",
+            above=0.0,
+            most=180.0,
+            when_none="any",
+            flag="--fold-bound",
+        ),
+    )
+    ends: settings.Ends = field(
+        default="fixed",
+        metadata=option(
+            "the strip has the rails' ends, or begins and ends where that makes it more developable"
+        ),
+    )
+    give_up: float | None = field(
+        default=None,
+        metadata=option(
+            "what free ends may leave of each rail, at either end", unit="mm", least=0.0, most=1e9
+        ),
+    )
+    cut: Cut = field(
+        default="shortest",
+        metadata=option(
+            "where a closed strip is cut to be laid flat: its shortest ruling, the one with the"
+            " smallest sheet, or from here on P to there on Q",
+            unit="mm",
+            least=0.0,
+            most=1e9,
+            metavar="shortest|best|P,Q",
         ),
     )
 

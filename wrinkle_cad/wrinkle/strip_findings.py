@@ -111,6 +111,25 @@ def flat_findings(name: str, unrolling: Unrolling) -> tuple[Finding, ...]:
     return tuple(findings)
 
 
+def unused_findings(name: str, unused: tuple[float, float, float, float]) -> tuple[Finding, ...]:
+    """Returns which rail a strip with free ends left.
+
+    Args:
+        name: of the strip.
+        unused: mm of P before and behind it, of Q before and behind it.
+    """
+    places = ("the start of P", "the end of P", "the start of Q", "the end of Q")
+    left = [
+        f"{length:.4g} mm at {place}"
+        for length, place in zip(unused, places, strict=True)
+        if length > 0.0
+    ]
+    if not left:
+        return ()
+    message = f"{name} leaves {', '.join(left)}: its ends are free, and so it bends less."
+    return (Finding("rail-unused", "info", message),)
+
+
 def area_findings(name: str, error: float) -> tuple[Finding, ...]:
     """Returns whether a strip's area is unsure.
 

@@ -104,6 +104,10 @@ class StripReport:
     """Length of P that bridges which are invalid, and no inflections, cover."""
     invalid_length_q_mm: float
     """Likewise of Q."""
+    unused_p_mm: tuple[float, float]
+    """Length of P that free ends left: before the strip and behind it."""
+    unused_q_mm: tuple[float, float]
+    """Likewise of Q."""
     faces: int
     """Faces of the surface."""
     bending: float
@@ -220,6 +224,8 @@ def report_on(
         price=triangulation.price,
         invalid_length_p_mm=p_invalid,
         invalid_length_q_mm=q_invalid,
+        unused_p_mm=triangulation.unused[:2],
+        unused_q_mm=triangulation.unused[2:],
         faces=face_count,
         bending=triangulation.bending,
         least_bending=least_bending,

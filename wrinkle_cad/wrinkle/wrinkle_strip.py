@@ -12,6 +12,7 @@ from wrinkle_cad.options.signature import takes_options_of
 
 from .found_strip import found_between
 from .options import StripArguments
+from .strip_findings import unused_findings
 from .triangulated_strip import TriangulatedStrip
 
 
@@ -67,7 +68,10 @@ class WrinkleStrip(TriangulatedStrip):
             thickness=chosen.thickness,
             k_factor=chosen.k_factor,
             grain=chosen.grain,
-            findings=_orientation_findings(chosen.name) if was_turned else (),
+            findings=(
+                *(_orientation_findings(chosen.name) if was_turned else ()),
+                *unused_findings(chosen.name, found.triangulation.unused),
+            ),
         )
 
 

@@ -10,29 +10,23 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
-from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
 
 from wrinkle_cad import settings
 from wrinkle_cad.cad.kernel.evaluation import PoleCurve
-from wrinkle_cad.cad.kernel.splines import curve_arrays, make_curve
-from wrinkle_cad.cad.kernel.steps import kernel_step
+from wrinkle_cad.cad.kernel.splines import make_curve
 from wrinkle_cad.errors import InputError
 from wrinkle_cad.strip.curve.nearest import nearest_on_polyline
 from wrinkle_cad.strip.curve.polyline import row_lengths
 from wrinkle_cad.strip.portable import dot
 
 from .directrix import Directrix
+from .feet import FOOT_STEPS, LOOKED_AT, foot_on, settled_foot
+from .trimming import part_of
 
 Floats = NDArray[np.float64]
-
-LOOKED_AT: Final = 721
-"""Points of a rail among which the nearest to the other rail are looked for first."""
-
-FOOT_STEPS: Final = 60
-"""Steps towards a foot, or from foot to foot; each gains digits, and the last changes nothing."""
 
 
 def are_closed(p: Directrix, q: Directrix) -> bool:
@@ -113,7 +107,7 @@ def _velocities(directrix: Directrix, at: float) -> tuple[Floats, Floats]:
 
 def _corner_and_foot(leader: Directrix, corners: Floats, other: Directrix) -> tuple[float, float]:
     points = leader.point_at(corners)
-    feet = [_foot(point, other) for point in points]
+    feet = [foot_on(point, other) for point in points]
     gaps = row_lengths(points - other.point_at(np.array(feet)))
     best = int(gaps.argmin())
     return float(corners[best]), feet[best]
@@ -123,49 +117,14 @@ def _nearest_places(p: Directrix, q: Directrix) -> tuple[float, float]:
     grid = np.linspace(*p.interval, LOOKED_AT)[:-1]
     line = q.point_at(np.linspace(*q.interval, LOOKED_AT))
     at_p = float(grid[nearest_on_polyline(p.point_at(grid), line).distance.argmin()])
-    at_q = _foot(p.point_at(np.array([at_p]))[0], q)
+    at_q = foot_on(p.point_at(np.array([at_p]))[0], q)
     for _ in range(FOOT_STEPS):
         before = at_p, at_q
-        at_p = _settled_foot(q.point_at(np.array([at_q]))[0], p, at_p)
-        at_q = _settled_foot(p.point_at(np.array([at_p]))[0], q, at_q)
+        at_p = settled_foot(q.point_at(np.array([at_q]))[0], p, at_p)
+        at_q = settled_foot(p.point_at(np.array([at_p]))[0], q, at_q)
         if (at_p, at_q) == before:
             break
     return at_p, at_q
-
-
-def _foot(point: Floats, rail: Directrix) -> float:
-    """The parameter of the point of a closed rail that is nearest to (3,) mm."""
-    grid = np.linspace(*rail.interval, LOOKED_AT)
-    found = nearest_on_polyline(point[None], rail.point_at(grid))
-    k, share = int(found.segment[0]), float(found.share[0])
-    return _settled_foot(point, rail, float((1.0 - share) * grid[k] + share * grid[k + 1]))
-
-
-def _settled_foot(point: Floats, rail: Directrix, start: float) -> float:
-    """Walks to the foot of a point: the tangent's foot, taken as far as it comes nearer."""
-    first, last = rail.interval
-    at, gap = start, _gap(point, rail, start)
-    for _ in range(FOOT_STEPS):
-        place = np.array([at])
-        velocity = rail.velocity_at(place)
-        speed2 = float(dot(velocity, velocity)[0])
-        if speed2 == 0.0:
-            break
-        step = float(dot(point[None] - rail.point_at(place), velocity)[0]) / speed2
-        while True:
-            there = first + (at + step - first) % (last - first)
-            nearer = _gap(point, rail, there)
-            if nearer < gap or abs(step) <= settings.KNOT_GAP:
-                break
-            step /= 2.0
-        if nearer >= gap:
-            break
-        at, gap = there, nearer
-    return at
-
-
-def _gap(point: Floats, rail: Directrix, at: float) -> float:
-    return float(row_lengths(rail.point_at(np.array([at])) - point)[0])
 
 
 def started_at(directrix: Directrix, at: float) -> Directrix:
@@ -219,8 +178,8 @@ def _turned_pieces(directrix: Directrix, at: float) -> tuple[PoleCurve, ...]:
     earlier = [_moved(other, length - at) for other in directrix.pieces[:i]]
     if at - piece.knots[0] <= settings.KNOT_GAP:
         return (_moved(piece, -at), *later, *earlier)
-    head = _moved(_part(piece, at, float(piece.knots[-1])), -at)
-    tail = _moved(_part(piece, float(piece.knots[0]), at), length - at)
+    head = _moved(part_of(piece, at, float(piece.knots[-1])), -at)
+    tail = _moved(part_of(piece, float(piece.knots[0]), at), length - at)
     if len(directrix.pieces) == 1:
         return (_joined(head, tail),)
     return (head, *later, *earlier, tail)
@@ -228,14 +187,6 @@ def _turned_pieces(directrix: Directrix, at: float) -> tuple[PoleCurve, ...]:
 
 def _moved(piece: PoleCurve, by: float) -> PoleCurve:
     return replace(piece, knots=piece.knots + by)
-
-
-def _part(piece: PoleCurve, first: float, last: float) -> PoleCurve:
-    curve = make_curve(piece.poles, piece.knots, piece.multiplicities, piece.degree, piece.weights)
-    with kernel_step("cut a rail in two"):
-        curve.Segment(first, last, settings.KNOT_GAP)
-    poles, weights, knots, multiplicities = curve_arrays(curve)
-    return PoleCurve(piece.degree, knots, multiplicities, poles, weights)
 
 
 def _joined(head: PoleCurve, tail: PoleCurve) -> PoleCurve:

@@ -133,8 +133,8 @@ def make_directrix(source: object, *, name: str = "") -> Directrix:
     if apex is not None:
         return _point(name, apex)
     if points is not None:
-        return _assemble(name, label, [_polyline(points, label)], is_polyline=True)
-    return _assemble(name, label, chain_of(source, label))
+        return assembled(name, label, [_polyline(points, label)], is_polyline=True)
+    return assembled(name, label, chain_of(source, label))
 
 
 def _point(name: str, place: Floats) -> Directrix:
@@ -199,13 +199,24 @@ def _polyline(points: Floats, label: str) -> PoleCurve:
     return PoleCurve(1, np.concatenate(([0.0], chords.cumsum())), multiplicities, points, None)
 
 
-def _assemble(
+def assembled(
     name: str,
     label: str,
     pieces: Sequence[PoleCurve],
     *,
     is_polyline: bool = False,
 ) -> Directrix:
+    """Returns the directrix of edges that follow each other.
+
+    Args:
+        name: what messages call it; "" if nobody named it.
+        label: what a message calls it all the same.
+        pieces: the edges, in any parameter.
+        is_polyline: whether it was given as points.
+
+    Raises:
+        InputError: it has no length.
+    """
     lengths = [_length(piece) for piece in pieces]
     total = float(sum(lengths))
     if not total > settings.RAIL_LENGTH_MIN:

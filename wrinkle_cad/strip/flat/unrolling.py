@@ -13,6 +13,7 @@ from wrinkle_cad.settings import PLANE_GAP, TURNED_BACK_PER_TOLERANCE, UNROLLING
 from wrinkle_cad.strip.curve.chebyshev import Cells, FloatArray, PointAt, fit_cells
 from wrinkle_cad.strip.curve.polyline import arc_lengths
 from wrinkle_cad.strip.curve.sampling import Samples
+from wrinkle_cad.strip.cut_open import cut_at
 from wrinkle_cad.strip.portable import atan2, cos, dot, norm, sin
 from wrinkle_cad.strip.triangulation import P_STEP, Triangulation
 
@@ -82,7 +83,8 @@ def unroll(triangulation: Triangulation) -> Unrolling:
     """Lays the flat triangles of a strip into the plane.
 
     A triangle without area is laid out along its bridge. Where both rails start in one point, the
-    first bank edge runs along -y.
+    first bank edge runs along -y. A closed strip is cut at its first bridge (see cut_open.cut_at
+    for others), and its first samples stand at both ends.
 
     Args:
         triangulation: the strip.
@@ -97,6 +99,8 @@ def unroll(triangulation: Triangulation) -> Unrolling:
         >>> unroll(tent).p[:, 0].round(6).tolist()
         [0.0, 5.0, 10.0]
     """
+    if triangulation.is_closed:
+        triangulation = cut_at(triangulation, 0)
     strip = _Chain(triangulation)
     outward = strip.before - strip.apex
     along = strip.after - strip.before
