@@ -36,7 +36,7 @@ def bend_table(pieces: Sequence[PatternPiece]) -> str:
                     piece.name,
                     number,
                     "DOWN" if fold > 0.0 else "UP",
-                    f"{abs(float(np.degrees(fold))):.4f}",
+                    f"{abs(float(np.degrees(fold))):.6f}",
                     f"{radius:.3f}",
                     f"{p_mm:.3f}",
                     f"{q_mm:.3f}",
