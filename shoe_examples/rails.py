@@ -10,6 +10,7 @@ from OCP.gp import gp_Dir, gp_Lin, gp_Pnt
 from OCP.IntCurvesFace import IntCurvesFace_ShapeIntersector
 from OCP.TopoDS import TopoDS_Edge, TopoDS_Shape
 
+from shoe_examples.upper import rounded
 from wrinkle_cad import smooth_edge
 
 AXIS_HEIGHT = 2.0
@@ -48,7 +49,7 @@ def rail_points(
         assert shooter.NbPnt() == 1, f"x {x} mm, {np.degrees(angle):.0f} degrees: no single hit"
         hit = shooter.Pnt(1)
         points.append((hit.X(), hit.Y(), hit.Z()))
-    return np.array(points)
+    return rounded(points)
 
 
 def vamp_rail(
@@ -71,4 +72,4 @@ def feather_rail(upper: TopoDS_Shape, x: float, *, skew: float = 0.0) -> TopoDS_
     for point in (points[0], points[-1]):
         nearest = BRepExtrema_DistShapeShape(Vertex(*point).wrapped, feather).PointOnShape2(1)
         ends.append([nearest.X(), nearest.Y(), nearest.Z()])
-    return smooth_edge(np.vstack((ends[:1], points, ends[1:])))
+    return smooth_edge(rounded(np.vstack((ends[:1], points, ends[1:]))))

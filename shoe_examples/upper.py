@@ -12,7 +12,7 @@ from collections.abc import Sequence
 from itertools import pairwise
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 from OCP.BRepBuilderAPI import BRepBuilderAPI_MakeFace, BRepBuilderAPI_Sewing
 from OCP.Geom import Geom_BSplineSurface
 from OCP.TopoDS import TopoDS_Face, TopoDS_Shape
@@ -23,6 +23,8 @@ from wrinkle_cad import make_surface
 SIZE = 42
 CONFUSION = 1e-7
 SEAM_TOLERANCE = 1e-6
+DECIMALS = 9
+"""Of the coordinates in mm that are written."""
 
 OUTER = (
     # feather x, y, z;  bulge out, up;  shoulder x, y, z;  crown x, y, z;  collar x, y, z
@@ -67,7 +69,14 @@ def upper_surface(size: float = SIZE) -> Geom_BSplineSurface:
     slope = CubicSpline(stations, closed, bc_type="periodic")(0.0, 1)
     spline = make_interp_spline(stations, closed, k=3, bc_type=([(1, slope)], [(1, slope)]))
     knots, counts = np.unique(spline.t, return_counts=True)
-    return make_surface(spline.c, (knots, (0.0, 1.0)), (counts, (5, 5)), (3, 4))
+    # Solvers differ in their last digits from processor to processor, and the file must not.
+    poles = rounded(spline.c)
+    return make_surface(poles, (knots, (0.0, 1.0)), (counts, (5, 5)), (3, 4))
+
+
+def rounded(coordinates: ArrayLike) -> NDArray[np.float64]:
+    """Returns coordinates as they are written, without a minus before a zero."""
+    return np.round(np.asarray(coordinates, dtype=np.float64), DECIMALS) + 0.0
 
 
 def upper_face(size: float = SIZE) -> TopoDS_Face:

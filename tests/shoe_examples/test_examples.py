@@ -107,13 +107,12 @@ def test_freecad_reads_every_example(
 
 @pytest.mark.parametrize("name", EXAMPLES)
 def test_the_committed_input_is_what_its_script_builds(name: str, tmp_path: Path) -> None:
-    built = tmp_path / "built.step"
+    built = tmp_path / f"{name}.step"
+    kept = (FOLDER / name / built.name).read_bytes()
     write_step(built, importlib.import_module(f"shoe_examples.{name}.build").parts())
-    fresh, kept = (read_cad(path) for path in (built, FOLDER / name / f"{name}.step"))
-    assert [shape.name for shape in fresh.shapes] == [shape.name for shape in kept.shapes]
-    for new, old in zip(fresh.shapes, kept.shapes, strict=True):
-        assert new.measure == pytest.approx(old.measure, rel=1e-9)
-        assert np.allclose(bounding_box(new.shape), bounding_box(old.shape), atol=1e-6)
+    assert [line for line in built.read_bytes().splitlines() if b"FILE_NAME" not in line] == [
+        line for line in kept.splitlines() if b"FILE_NAME" not in line
+    ]
 
 
 @pytest.mark.parametrize("name", EXAMPLES)
