@@ -44,7 +44,7 @@ def draw_result(folder: Path) -> None:
 
 
 def draw_pattern(folder: Path) -> None:
-    """Writes pattern.png: the wrinkle's piece and its bands', with allowance and notches."""
+    """Writes pattern.png: the wrinkle's piece and its bands', with allowance and rulings."""
     import matplotlib as mpl
 
     mpl.use("Agg")
@@ -52,7 +52,7 @@ def draw_pattern(folder: Path) -> None:
 
     result = stitched_upper(folder)
     rule = NotchRule(count=5)
-    wanted = PieceSettings(seam_allowance=(4.0,) * 4, notches_p=rule, notches_q=rule)
+    wanted = PieceSettings(seam_allowance=(4.0,) * 4, notches_p=rule, notches_q=rule, rulings=True)
     pattern = pattern_of_strips([*result.strips, *result.bands], wanted)
     figure, axes = plt.subplots(figsize=(14.0, 5.6), dpi=90, layout="constrained")
     plot_pattern(axes, pattern.pieces)
@@ -60,11 +60,12 @@ def draw_pattern(folder: Path) -> None:
     plt.close(figure)
 
 
-def main(folder: Path, parts: Sequence[Part]) -> None:
+def main(folder: Path, parts: Sequence[Part], *, has_pattern: bool = False) -> None:
     """Writes the input of an example; with ``--picture`` draws what its job makes of it."""
     step = folder / f"{folder.name}.step"
     write_step(step, parts)
     print(f"{step.name}: {', '.join(part.name for part in parts)}")
     if "--picture" in sys.argv:
         draw_result(folder)
-        draw_pattern(folder)
+        if has_pattern:
+            draw_pattern(folder)

@@ -27,4 +27,4 @@ def parts() -> list[Part]:
 
 
 if __name__ == "__main__":
-    main(Path(__file__).parent, parts())
+    main(Path(__file__).parent, parts(), has_pattern=True)
