@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from .cad.exchange.write import write_step as write_step
     from .cad.kernel.splines import make_surface as make_surface
     from .cad.upper.carve import carve as carve
+    from .cad.upper.carve import carve_all as carve_all
     from .cad.upper.opening import Opening as Opening
     from .cad.upper.profiles import wrinkle_profiles as wrinkle_profiles
     from .cad.upper.smooth import smooth_edge as smooth_edge
@@ -59,6 +60,7 @@ _MODULE_OF: Final = {
     "Part": "cad.exchange.shapes",
     "write_step": "cad.exchange.write",
     "carve": "cad.upper.carve",
+    "carve_all": "cad.upper.carve",
     "Opening": "cad.upper.opening",
     "wrinkle_profiles": "cad.upper.profiles",
     "stitch": "cad.upper.stitch",

@@ -223,6 +223,12 @@ CLOSED_RAIL_CORNER: Final = 0.0175
 DEVELOPABLE_SHARE: Final = 0.98
 """The share of its rails that exact rulings cover on a strip that is a developable surface."""
 
+FEET_PER_LENGTH: Final = 1e-3
+"""A rail whose feet on the upper span less than this share of its length stands on it upright."""
+
+STANDING_PER_LENGTH: Final = 1e-8
+"""Feet that follow each other within this share of their whole length are one point."""
+
 RAIL_LENGTH_MIN: Final = 1e-6
 """mm; a rail must be longer than this."""
 
@@ -340,6 +346,9 @@ RAIL_ON_UPPER: Final = 1e-5
 
 BORDER_REACH_PER_LENGTH: Final = 1e-4
 """A rail that ends nearer to the upper's border than this share of its length ends on it."""
+
+OPENINGS_APART: Final = 0.01
+"""mm; openings of one upper must be further from each other: some ten times what is sewn."""
 
 RIBBON_PER_LENGTH: Final = 0.01
 """The ribbons that cut an opening stand out of the upper by this share of the rails' length."""

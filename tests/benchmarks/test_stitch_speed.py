@@ -55,7 +55,7 @@ class BareKernel:
         split, sew = carving.split_faces, stitching.sew
 
         def keep_sides(*arguments: Any) -> splitting.Split:
-            self.sides = list(arguments[2])
+            self.sides = [side for plan in arguments[1] for side in plan.sides]
             return split(*arguments)
 
         def keep_faces(faces: list[TopoDS_Face], tolerance: float) -> Sewn:

@@ -19,7 +19,7 @@ from .parts import limits_of, material_of, strip_of
 if TYPE_CHECKING:
     from wrinkle_cad.cad.exchange.choose import Chosen, StripInput
     from wrinkle_cad.cad.exchange.shapes import NamedShape
-    from wrinkle_cad.cad.upper.opening import Opening
+    from wrinkle_cad.cad.upper.opening import CarveRequest, Opening
     from wrinkle_cad.cad.upper.stitch import Stitched
 
 
@@ -129,36 +129,38 @@ def wrinkle_upper(job: Job, chosen: Chosen) -> WrinkledUpper:
         >>> [strip.name for strip in (*wrinkled.strips, *wrinkled.bands)]
         ['shoe', 'shoe band P', 'shoe band Q']
     """
+    from wrinkle_cad.cad.upper.carve import carve_shapes
     from wrinkle_cad.cad.upper.stitch import stitch
 
     assert chosen.upper is not None
-    body = chosen.upper.shape
-    openings: list[Opening] = []
-    strips: list[WrinkleStrip] = []
-    for given in chosen.strips:
-        opening = _carved(job, body, given)
-        p, q = _profiles(job, opening, given)
-        openings.append(opening)
-        strips.append(strip_of(job, p, q, given.name))
-        body = opening.body_shape
+    upper = chosen.upper.shape
+    requests = [_request(job, given) for given in chosen.strips]
+    openings = carve_shapes(upper, requests, source=upper)
+    strips = [
+        strip_of(job, *_profiles(job, opening, given), given.name)
+        for opening, given in zip(openings, chosen.strips, strict=True)
+    ]
     stitched = stitch(openings, strips, tolerance=job.tolerance)
     bands = _bands(job, stitched)
     return WrinkledUpper(chosen.upper, tuple(openings), tuple(strips), bands, stitched)
 
 
-def _carved(job: Job, body: object, given: StripInput) -> Opening:
-    from wrinkle_cad.cad.upper.carve import carve
+def _request(job: Job, given: StripInput) -> CarveRequest:
+    from wrinkle_cad.cad.upper.carve import carve_request
 
-    rails = (given.p.shape, given.q.shape)
-    options: dict[str, Any] = {"fade": job.fade, "allow_split": job.allow_split}
-    if job.margin is not None:
-        return carve(body, *rails, margin=job.margin, **options)
-    if job.height is not None:
-        return carve(body, *rails, margin=max(abs(height) for height in job.height), **options)
-    # Drawn profiles: bands as wide as the profiles are high lie at 45 degrees.
-    opening = carve(body, *rails, margin=0.0, **options)
-    highest = max(opening.distances)
-    return opening if highest <= job.tolerance else carve(body, *rails, margin=highest, **options)
+    margin = job.margin
+    if margin is None and job.height is not None:
+        # Bands as wide as the waves are high lie at 45 degrees; for drawn profiles ``carve`` sees.
+        margin = max(abs(height) for height in job.height)
+    return carve_request(
+        given.p.shape,
+        given.q.shape,
+        margin=margin,
+        fade=job.fade,
+        allow_split=job.allow_split,
+        tolerance=job.tolerance,
+        name=given.name,
+    )
 
 
 def _profiles(job: Job, opening: Opening, given: StripInput) -> tuple[object, object]:

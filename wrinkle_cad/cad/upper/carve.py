@@ -6,7 +6,6 @@ from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import NDArray
-from OCP.BRepExtrema import BRepExtrema_DistShapeShape
 from OCP.TopoDS import TopoDS_Edge, TopoDS_Face, TopoDS_Shape
 
 from wrinkle_cad import settings
@@ -14,20 +13,22 @@ from wrinkle_cad.cad.kernel.connectivity import border_chain, connected_groups, 
 from wrinkle_cad.cad.kernel.curves import edge_middle
 from wrinkle_cad.cad.kernel.measures import face_areas, length_of
 from wrinkle_cad.cad.kernel.shape_index import ShapeIndex
-from wrinkle_cad.cad.kernel.topology import faces_of, free_edges, make_compound, make_vertex, unwrap
+from wrinkle_cad.cad.kernel.topology import faces_of, free_edges, make_compound, unwrap
 from wrinkle_cad.cad.rail.directrix import Directrix, make_directrix, orient_alike
 from wrinkle_cad.errors import CadError, InputError
 
 from .opening import CarveRequest, Opening
-from .opening_outline import Rail, Side, across_rail, end_between, faded_margin, rail_on, side_of
+from .opening_outline import Rail
+from .opening_plan import ENDS, OpeningPlan, plan_opening
+from .openings_apart import check_openings_apart
+from .pieces import CutEdge, Split
 from .projection import UpperFaces
 from .sew import joined
 from .smooth import smooth_edge
-from .split import Split, split_faces
+from .split import split_faces
 
 Floats = NDArray[np.float64]
 STEP = "carve the upper"
-ENDS = ("start", "end")
 
 
 def carve(
@@ -70,56 +71,157 @@ def carve(
         >>> opening
         Opening(body 4469.8 mm2, removed 1530.2 mm2)
     """
-    _check_numbers(margin, fade, limit, join)
-    first, second, _ = orient_alike(make_directrix(p, name="P"), make_directrix(q, name="Q"))
-    request = CarveRequest(first, second, margin, fade, limit, join, allow_split)
+    request = carve_request(
+        p, q, margin=margin, fade=fade, limit=limit, join=join, allow_split=allow_split
+    )
     return carve_shape(unwrap(upper), request, source=upper)
+
+
+def carve_all(
+    upper: object,
+    rails: Sequence[tuple[object, object]],
+    *,
+    margin: float = 0.0,
+    fade: float = settings.FADE,
+    limit: float = settings.RAIL_OFF_UPPER,
+    join: float = settings.SEWING,
+    allow_split: bool = False,
+    names: Sequence[str] = (),
+) -> list[Opening]:
+    """Cuts several strips out of an upper at once: many times as fast as one after the other.
+
+    Args:
+        upper: as in ``carve``.
+        rails: per strip its rails P and Q.
+        margin: mm; as in ``carve``, as are the options that follow.
+        fade: share of the rails.
+        limit: mm.
+        join: mm.
+        allow_split: whether the openings may part the upper.
+        names: of the strips, for messages; A, B, C and so on when left out.
+
+    Returns:
+        One opening per strip; all have the same body, the upper without any of them.
+
+    Raises:
+        InputError: as ``carve``; openings that overlap, touch or lie in each other.
+        CadError: as ``carve``.
+
+    Example:
+        >>> from build123d import Edge, Face
+        >>> def line(y):
+        ...     return Edge.make_line((-40, y), (40, y))
+        >>> carve_all(Face.make_rect(100, 60), [(line(-20), line(-10)), (line(5), line(20))])
+        [Opening(body 4000.0 mm2, removed 800.0 mm2), Opening(body 4000.0 mm2, removed 1200.0 mm2)]
+    """
+    if not rails or len(names) not in (0, len(rails)):
+        raise InputError(
+            f"{len(rails)} pairs of rails and {len(names)} names are given: pass at least one pair,"
+            " and one name per pair or none."
+        )
+    called = names or [_letters(k) for k in range(len(rails))]
+    requests = [
+        carve_request(
+            p,
+            q,
+            margin=margin,
+            fade=fade,
+            limit=limit,
+            join=join,
+            allow_split=allow_split,
+            name=name,
+        )
+        for (p, q), name in zip(rails, called, strict=True)
+    ]
+    return carve_shapes(unwrap(upper), requests, source=upper)
+
+
+def _letters(k: int) -> str:
+    return chr(65 + k) if k < 26 else _letters(k // 26 - 1) + chr(65 + k % 26)
+
+
+def carve_request(
+    p: object,
+    q: object,
+    *,
+    margin: float | None = None,
+    fade: float = settings.FADE,
+    limit: float = settings.RAIL_OFF_UPPER,
+    join: float = settings.SEWING,
+    allow_split: bool = False,
+    tolerance: float = settings.TOLERANCE,
+    name: str = "",
+) -> CarveRequest:
+    """Returns what ``carve_shapes`` takes for one strip, its rails turned alike.
+
+    Raises:
+        InputError: what is no rail; values out of range.
+    """
+    _check_numbers(0.0 if margin is None else margin, fade, limit, join)
+    first, second, _ = orient_alike(make_directrix(p, name="P"), make_directrix(q, name="Q"))
+    return CarveRequest(first, second, margin, fade, limit, join, allow_split, tolerance, name)
 
 
 def carve_shape(shape: TopoDS_Shape, request: CarveRequest, *, source: object = None) -> Opening:
     """Cuts an opening into a shape of the kernel; see ``carve``."""
+    return carve_shapes(shape, [request], source=source)[0]
+
+
+def carve_shapes(
+    shape: TopoDS_Shape, requests: Sequence[CarveRequest], *, source: object = None
+) -> list[Opening]:
+    """Cuts several openings into one shape of the kernel at once; see ``carve``.
+
+    All have one and the same body, that without any of the strips. Their areas follow each other
+    as if they had been cut in turn.
+
+    Raises:
+        InputError: as ``carve``; openings that overlap, touch or lie in each other.
+        CadError: as ``carve``.
+    """
     given = shape
-    shape, order = _joined_upper(given, request.join)
+    shape, order = _joined_upper(given, max(request.join for request in requests))
     faces = UpperFaces(shape)
-    rails = (rail_on(faces, request.p, "P"), rail_on(faces, request.q, "Q"))
-    for rail, name in zip(rails, "PQ", strict=True):
-        _check_near(rail, name, request.limit)
-    across = (
-        across_rail(rails[0], rails[1], ("P", "Q")),
-        across_rail(rails[1], rails[0], ("Q", "P")),
-    )
-    on_border = _ends_on_border(shape, rails)
-    sides = _sides(faces, rails, across, request, on_border)
-    height = settings.RIBBON_PER_LENGTH * min(rail.length for rail in rails)
-    beyond = (height * on_border[0], height * on_border[1])
-    overrun = [beyond, beyond, (0.0, 0.0), (0.0, 0.0)]
-    split = split_faces(faces.faces, shape, sides, height, overrun[: len(sides)])
-    body, removed, origin = _divided(split)
-    _check_removed(removed, rails)
-    count = _check_whole(faces, body, request.allow_split)
-    chains, lost = _chains(split, sides, removed, on_border, rails)
-    return Opening(
-        body_shape=joined_faces(body),
-        removed_shape=joined_faces(removed),
-        p_edges=chains[0],
-        q_edges=chains[1],
-        start_edges=chains[2],
-        end_edges=chains[3],
-        rail_p_curve=_rail_curve(rails[0], request.p),
-        rail_q_curve=_rail_curve(rails[1], request.q),
-        rails=rails,
-        across=across,
-        ends_on_border=on_border,
-        face_origin=tuple(order[origin[i]] for group in connected_groups(body) for i in group),
-        distances=(float(rails[0].feet.distances.max()), float(rails[1].feet.distances.max())),
-        areas=_checked_areas(faces.faces, split),
-        body_count=count,
-        lost_border=lost,
-        upper_shape=shape,
-        given_shape=given,
-        request=request,
-        source=source,
-    )
+    plans = [plan_opening(faces, shape, request) for request in requests]
+    check_openings_apart(plans)
+    split = split_faces(faces, plans)
+    body, removed, origin = _divided(split, plans)
+    for plan, cut in zip(plans, removed, strict=True):
+        _check_removed(cut, plan.rails)
+    allowed = all(request.allow_split for request in requests)
+    count = _check_whole(faces, body, allowed)
+    body_shape = joined_faces(body)
+    whole, kept, cut_areas = _checked_areas(faces.faces, split, len(plans))
+    groups = connected_groups(body)
+    openings = []
+    for k, plan in enumerate(plans):
+        chains, lost = _chains(split.cuts[k], plan, removed[k])
+        still = kept + sum(cut_areas[k + 1 :])
+        openings.append(
+            Opening(
+                body_shape=body_shape,
+                removed_shape=joined_faces(removed[k]),
+                p_edges=chains[0],
+                q_edges=chains[1],
+                start_edges=chains[2],
+                end_edges=chains[3],
+                rail_p_curve=_rail_curve(plan.rails[0], plan.request.p),
+                rail_q_curve=_rail_curve(plan.rails[1], plan.request.q),
+                rails=plan.rails,
+                across=plan.across,
+                ends_on_border=plan.ends_on_border,
+                face_origin=tuple(order[origin[i]] for group in groups for i in group),
+                distances=_distances(plan.rails),
+                areas=(whole if k == 0 else still + cut_areas[k], still, cut_areas[k]),
+                body_count=count,
+                lost_border=lost,
+                upper_shape=shape,
+                given_shape=given,
+                request=plan.request,
+                source=source,
+            )
+        )
+    return openings
 
 
 def _joined_upper(shape: TopoDS_Shape, join: float) -> tuple[TopoDS_Shape, list[int]]:
@@ -128,24 +230,6 @@ def _joined_upper(shape: TopoDS_Shape, join: float) -> tuple[TopoDS_Shape, list[
     if join > 0.0 and len(connected_groups(faces)) > 1:
         return joined(faces, join)
     return shape, list(range(len(faces)))
-
-
-def _sides(
-    faces: UpperFaces,
-    rails: tuple[Rail, Rail],
-    across: tuple[Floats, Floats],
-    request: CarveRequest,
-    on_border: tuple[bool, bool],
-) -> list[Side]:
-    sides = [
-        side_of(faces, rail, toward, faded_margin(rail.shares, request.margin, request.fade), name)
-        for rail, toward, name in zip(rails, across, "pq", strict=True)
-    ]
-    for at, name in ((0, "start"), (-1, "end")):
-        end = None if on_border[at] else end_between(faces, sides[0], sides[1], at, name)
-        if end is not None:
-            sides.append(end)
-    return sides
 
 
 def _check_numbers(margin: float, fade: float, limit: float, join: float) -> None:
@@ -159,42 +243,19 @@ def _check_numbers(margin: float, fade: float, limit: float, join: float) -> Non
             raise InputError(f"{name} is {value:g}: {low:g} to {high:g} is allowed.")
 
 
-def _check_near(rail: Rail, name: str, limit: float) -> None:
-    at = int(rail.feet.distances.argmax())
-    distance = float(rail.feet.distances[at])
-    if distance > limit:
-        raise InputError(
-            f"Rail {name} leaves the upper by {distance:.3g} mm at"
-            f" {rail.shares[at] * rail.length:.4g} mm of its {rail.length:.4g} mm, at most"
-            f" {limit:.3g} mm is allowed. Draw it nearer to the upper, or raise the limit."
-        )
-
-
-def _ends_on_border(shape: TopoDS_Shape, rails: tuple[Rail, Rail]) -> tuple[bool, bool]:
-    border = free_edges(shape)
-    if not border:
-        return False, False
-    held = make_compound(border)
-    reach = [settings.BORDER_REACH_PER_LENGTH * rail.length for rail in rails]
-
-    def reaches(at: int) -> bool:
-        gaps = [
-            BRepExtrema_DistShapeShape(make_vertex(rail.points[at]), held).Value() for rail in rails
-        ]
-        return all(gap <= limit for gap, limit in zip(gaps, reach, strict=True))
-
-    return reaches(0), reaches(-1)
-
-
-def _divided(split: Split) -> tuple[list[TopoDS_Face], list[TopoDS_Face], tuple[int, ...]]:
-    body, removed, origin = [], [], []
-    for i, (group, inside) in enumerate(zip(split.pieces, split.is_inside, strict=True)):
-        for piece, is_inside in zip(group, inside, strict=True):
-            if is_inside:
-                removed.append(piece)
-            else:
+def _divided(
+    split: Split, plans: Sequence[OpeningPlan]
+) -> tuple[list[TopoDS_Face], list[list[TopoDS_Face]], tuple[int, ...]]:
+    """Returns the body's faces, those cut out per opening, and the body's faces' origin."""
+    body, origin = list[TopoDS_Face](), list[int]()
+    removed: list[list[TopoDS_Face]] = [[] for _ in plans]
+    for i, (group, inside) in enumerate(zip(split.pieces, split.inside, strict=True)):
+        for piece, of in zip(group, inside, strict=True):
+            if of < 0:
                 body.append(piece)
                 origin.append(i)
+            else:
+                removed[of].append(piece)
     return body, removed, tuple(origin)
 
 
@@ -217,17 +278,24 @@ def _check_whole(faces: UpperFaces, body: Sequence[TopoDS_Face], allow_split: bo
     return after
 
 
-def _checked_areas(faces: Sequence[TopoDS_Face], split: Split) -> tuple[float, float, float]:
-    """Returns mm^2: upper, body, removed; a face that was not split is measured once."""
+def _checked_areas(
+    faces: Sequence[TopoDS_Face], split: Split, count: int
+) -> tuple[float, float, list[float]]:
+    """Returns mm^2: upper, body, and removed per opening; what was not split is measured once."""
     bound = settings.AREA_BALANCE / 4.0
-    whole = kept = cut = 0.0
-    for face, group, inside in zip(faces, split.pieces, split.is_inside, strict=True):
+    whole = kept = 0.0
+    removed = [0.0] * count
+    for face, group, inside in zip(faces, split.pieces, split.inside, strict=True):
         (before,) = face_areas([face], relative_error=bound)
         is_whole = len(group) == 1 and group[0].IsPartner(face)
         after = [before] if is_whole else face_areas(group, relative_error=bound)
         whole += before
-        kept += sum(area for area, is_in in zip(after, inside, strict=True) if not is_in)
-        cut += sum(area for area, is_in in zip(after, inside, strict=True) if is_in)
+        for area, of in zip(after, inside, strict=True):
+            if of < 0:
+                kept += area
+            else:
+                removed[of] += area
+    cut = sum(removed)
     off = abs(kept + cut - whole) / whole
     if off > settings.AREA_BALANCE:
         raise CadError(
@@ -235,22 +303,19 @@ def _checked_areas(faces: Sequence[TopoDS_Face], split: Split) -> tuple[float, f
             f"body and removed part have {kept + cut:.9g} mm2, the upper {whole:.9g}: off by"
             f" {off:.1e} of it, at most {settings.AREA_BALANCE:.0e} is allowed. Move the rails.",
         )
-    return whole, kept, cut
+    return whole, kept, removed
 
 
 def _chains(
-    split: Split,
-    sides: Sequence[Side],
-    removed: Sequence[TopoDS_Face],
-    on_border: tuple[bool, bool],
-    rails: tuple[Rail, Rail],
+    cuts: Sequence[CutEdge], plan: OpeningPlan, removed: Sequence[TopoDS_Face]
 ) -> tuple[list[tuple[TopoDS_Edge, ...]], float]:
     """Returns the edges along P and Q and across both ends, and mm of border lost besides."""
+    rails, on_border = plan.rails, plan.ends_on_border
     named: dict[str, tuple[TopoDS_Edge, ...]] = {
-        side.name: tuple(cut.edge for cut in split.cuts if cut.side == i)
-        for i, side in enumerate(sides)
+        side.name: tuple(cut.edge for cut in cuts if cut.side == i)
+        for i, side in enumerate(plan.sides)
     }
-    cut_edges = ShapeIndex(cut.edge for cut in split.cuts)
+    cut_edges = ShapeIndex(cut.edge for cut in cuts)
     border = [edge for edge in free_edges(make_compound(removed)) if cut_edges.find(edge) < 0]
     corners = np.array([[rail.points[at] for rail in rails] for at in (0, -1)])
     middles = corners.mean(axis=1)
@@ -265,6 +330,10 @@ def _chains(
     kept = ShapeIndex(edge for at in (0, 1) if on_border[at] for edge in named[ENDS[at]])
     lost = sum(length_of(edge) for edge in border if kept.find(edge) < 0)
     return [named.get(name, ()) for name in ("p", "q", *ENDS)], lost
+
+
+def _distances(rails: tuple[Rail, Rail]) -> tuple[float, float]:
+    return float(rails[0].feet.distances.max()), float(rails[1].feet.distances.max())
 
 
 def _rail_curve(rail: Rail, given: Directrix) -> Directrix:

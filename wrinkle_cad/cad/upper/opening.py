@@ -28,8 +28,8 @@ class CarveRequest:
     """Rail P."""
     q: Directrix
     """Rail Q."""
-    margin: float
-    """mm; how far the opening reaches beyond the rails."""
+    margin: float | None
+    """mm; how far the opening reaches beyond the rails; None: as far as the rails lie from the upper, nothing where that is the tolerance."""
     fade: float
     """The share of the rails over which the margin grows and dies away."""
     limit: float
@@ -38,6 +38,10 @@ class CarveRequest:
     """mm; faces of the upper this near to each other are joined."""
     allow_split: bool
     """Whether the upper may fall apart."""
+    tolerance: float = 0.0
+    """mm; rails nearer to the upper lie on it."""
+    name: str = ""
+    """Of the strip, for messages."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)

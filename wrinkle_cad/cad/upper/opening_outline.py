@@ -16,7 +16,12 @@ from numpy.typing import NDArray
 from wrinkle_cad import settings
 from wrinkle_cad.cad.rail.directrix import Directrix
 from wrinkle_cad.errors import InputError
-from wrinkle_cad.strip.curve.polyline import arc_lengths, points_at, polyline_length
+from wrinkle_cad.strip.curve.polyline import (
+    arc_lengths,
+    points_at,
+    polyline_length,
+    segment_lengths,
+)
 from wrinkle_cad.strip.portable import dot, norm, sin
 
 from .projection import Feet, UpperFaces
@@ -63,15 +68,24 @@ def rail_on(upper: UpperFaces, directrix: Directrix, name: str) -> Rail:
     """Returns a directrix as it lies on the upper, at points even in its arc length.
 
     Raises:
-        InputError: all its feet are one point.
+        InputError: its feet, or some that follow each other, are one point.
     """
     parameters = _even_parameters(directrix, settings.RAIL_POINTS)
-    feet = upper.feet(directrix.point_at(parameters))
+    given = directrix.point_at(parameters)
+    feet = upper.feet(given)
+    own = polyline_length(given)
+    steps = segment_lengths(feet.points)
     length = polyline_length(feet.points)
-    if not length > settings.RAIL_LENGTH_MIN:
+    if not length > max(settings.RAIL_LENGTH_MIN, settings.FEET_PER_LENGTH * own):
         raise InputError(
-            f"The feet of rail {name} on the upper are one point: they span {length:.3g} mm, more"
-            f" than {settings.RAIL_LENGTH_MIN:.0e} mm is needed. Draw it along the upper."
+            f"The feet of rail {name} on the upper are one point: the rail is {own:.4g} mm long,"
+            f" its feet span {length:.3g} mm. Draw it along the upper."
+        )
+    if steps.min() <= settings.STANDING_PER_LENGTH * length:
+        at = own * (int(steps.argmin()) + 0.5) / len(steps)
+        raise InputError(
+            f"Rail {name} stands upright on the upper at {at:.4g} mm of its {own:.4g} mm: its feet"
+            " are one point there. Draw it along the upper."
         )
     return Rail(
         arc_lengths(feet.points) / length, feet, unit(np.gradient(feet.points, axis=0)), length

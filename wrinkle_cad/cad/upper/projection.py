@@ -73,6 +73,15 @@ class UpperFaces:
         distances = np.asarray(np.linalg.norm(found - points, axis=1))
         return Feet(found, _turned_alike(normals), distances, owner)
 
+    def near(self, points: Floats, reach: float) -> list[int]:
+        """Returns the faces whose boxes come within ``reach`` mm of one of (k, 3) points."""
+        found = []
+        for i, (low, high) in enumerate(self._boxes):
+            outside = np.maximum(np.maximum(low - points, points - high), 0.0)
+            if (np.linalg.norm(outside, axis=1) <= reach).any():
+                found.append(i)
+        return found
+
     def _try_face(
         self,
         i: int,

@@ -13,7 +13,7 @@ from wrinkle_cad.cad.kernel.measures import length_of
 from wrinkle_cad.cad.kernel.shape_index import ShapeIndex
 from wrinkle_cad.strip.portable import dot, norm
 
-from .split import edge_frame, oriented_edges
+from .pieces import edge_frame, oriented_edges
 
 
 @dataclass(frozen=True, slots=True)

@@ -18,7 +18,7 @@ from wrinkle_cad.cad.kernel.steps import kernel_step
 from wrinkle_cad.cad.kernel.topology import as_shell, edges_of, faces_of, shells_of
 from wrinkle_cad.errors import CadError
 
-from .split import oriented_edges
+from .pieces import oriented_edges
 
 STEP = "sew the wrinkle to the body"
 

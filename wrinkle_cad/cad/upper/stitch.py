@@ -21,7 +21,7 @@ from wrinkle_cad.strip.portable import norm
 
 from .bands import Band, StripLike, make_band
 from .border_check import compared_border
-from .carve import carve_shape
+from .carve import carve_shapes
 from .end_fans import end_fan
 from .opening import Opening
 from .seam_angle import SeamAngle, seam_angles
@@ -109,7 +109,7 @@ def stitch(
 
     Where a profile leaves its opening's boundary, a band closes the gap; where the end bridge of a
     wrinkle leaves the opening's end, a fan does. Several openings may have been carved one after
-    the other from each other's bodies, or each from the same upper.
+    the other from each other's bodies, or each from the same upper: these are cut anew, at once.
 
     Args:
         openings: one, or several in order.
@@ -139,20 +139,30 @@ def stitch(
             f"{len(given)} openings and {len(wanted)} strips cannot be stitched: pass lists of"
             " equal length, one strip per opening."
         )
-    chained = _carved_in_turn(given)
+    chained = _carved_together(given, wanted)
     faces, parts, bands = _all_faces(chained, wanted, tolerance)
     sewn = sew(faces, settings.SEWING)
     return _stitched(given, chained, sewn, parts, bands)
 
 
-def _carved_in_turn(openings: Sequence[Opening]) -> list[Opening]:
-    """Returns the openings, each carved from the body of the one before."""
-    chained = [openings[0]]
-    for opening in openings[1:]:
-        body = chained[-1].body_shape
-        if not opening.given_shape.IsSame(body):
-            opening = carve_shape(body, opening.request, source=opening.source)
-        chained.append(opening)
+def _carved_together(openings: Sequence[Opening], strips: Sequence[StripLike]) -> list[Opening]:
+    """Returns the openings with one body, or each carved from the body of those before.
+
+    Openings that were cut from one and the same upper, each for itself, are cut anew, all at once.
+    """
+    chained: list[Opening] = []
+    pairs = list(zip(openings, strips, strict=True))
+    while pairs:
+        given = pairs[0][0].given_shape
+        count = next((i for i, (o, _) in enumerate(pairs) if not o.given_shape.IsSame(given)), None)
+        run, pairs = pairs[:count], [] if count is None else pairs[count:]
+        held = [opening for opening, _ in run]
+        upper = chained[-1].body_shape if chained else given
+        is_one = all(opening.body_shape.IsSame(held[0].body_shape) for opening in held)
+        if not is_one or not given.IsSame(upper):
+            named = [replace(opening.request, name=strip.name) for opening, strip in run]
+            held = carve_shapes(upper, named, source=held[0].source)
+        chained += held
     return chained
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
+from itertools import pairwise
 
 from OCP.TopoDS import TopoDS_Face
 
@@ -49,7 +50,9 @@ def stitched_part(
 def _origin_of_body(openings: Sequence[Opening]) -> tuple[int, ...]:
     """Returns for each face of the last body which face of the upper it is, or is part of."""
     origin = openings[0].face_origin
-    for opening in openings[1:]:
+    for before, opening in pairwise(openings):
+        if opening.body_shape.IsSame(before.body_shape):
+            continue
         origin = tuple(origin[i] for i in opening.face_origin)
     return origin
 
