@@ -223,12 +223,6 @@ CLOSED_RAIL_CORNER: Final = 0.0175
 DEVELOPABLE_SHARE: Final = 0.98
 """The share of its rails that exact rulings cover on a strip that is a developable surface."""
 
-FEET_PER_LENGTH: Final = 1e-3
-"""A rail whose feet on the upper span less than this share of its length stands on it upright."""
-
-STANDING_PER_LENGTH: Final = 1e-8
-"""Feet that follow each other within this share of their whole length are one point."""
-
 RAIL_LENGTH_MIN: Final = 1e-6
 """mm; a rail must be longer than this."""
 
@@ -398,9 +392,3 @@ BAND_NARROWEST: Final = 5e-3
 
 BAND_LINE: Final = 1025
 """Distances to an opening's side are first looked for on so many points of it."""
-
-DRAWN_EDGE_GAP: Final = 2e-6
-"""mm; an outline that cannot be drawn on a face this exactly is cut with ribbons instead."""
-
-DRAWN_EDGE_DENSITIES: Final = (1, 2, 4, 8)
-"""Points of a drawn curve in space per point of its side, tried in turn."""

@@ -172,8 +172,7 @@ def carve_shapes(
 ) -> list[Opening]:
     """Cuts several openings into one shape of the kernel at once; see ``carve``.
 
-    All have one and the same body, that without any of the strips. Their areas follow each other
-    as if they had been cut in turn.
+    All have one and the same body, that without any of the strips.
 
     Raises:
         InputError: as ``carve``; openings that overlap, touch or lie in each other.
@@ -196,7 +195,6 @@ def carve_shapes(
     openings = []
     for k, plan in enumerate(plans):
         chains, lost = _chains(split.cuts[k], plan, removed[k])
-        still = kept + sum(cut_areas[k + 1 :])
         openings.append(
             Opening(
                 body_shape=body_shape,
@@ -212,7 +210,8 @@ def carve_shapes(
                 ends_on_border=plan.ends_on_border,
                 face_origin=tuple(order[origin[i]] for group in groups for i in group),
                 distances=_distances(plan.rails),
-                areas=(whole if k == 0 else still + cut_areas[k], still, cut_areas[k]),
+                areas=(whole, kept, cut_areas[k]),
+                removed_beside=sum(cut_areas) - cut_areas[k],
                 body_count=count,
                 lost_border=lost,
                 upper_shape=shape,

@@ -7,6 +7,7 @@ it. It serves where the whole outline lies on one face, away from its seam.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
@@ -26,7 +27,14 @@ from wrinkle_cad.strip.curve.polyline import arc_lengths
 from .opening_outline import Side
 
 Floats = NDArray[np.float64]
-BETWEEN = np.array([0.25, 0.5, 0.75])
+
+DRAWN_EDGE_GAP: Final = 2e-6
+"""mm; an outline that cannot be drawn on a face this exactly is cut with ribbons instead."""
+
+DRAWN_EDGE_HALVINGS: Final = 12
+"""How often a stretch of a side is halved, at most, until its curve in space is exact enough."""
+
+BETWEEN: Final = np.array([0.25, 0.5, 0.75])
 
 
 def drawn_edges(face: TopoDS_Face, sides: Sequence[Side]) -> list[TopoDS_Edge] | None:
@@ -52,17 +60,25 @@ def drawn_edges(face: TopoDS_Face, sides: Sequence[Side]) -> list[TopoDS_Edge] |
 def _drawn_edge(
     face: TopoDS_Face, surface: ShapeAnalysis_Surface, flat: BSpline, arc: Floats
 ) -> TopoDS_Edge | None:
-    """Returns the edge over a curve in parameters, its curve in space as dense as it has to be."""
-    for count in settings.DRAWN_EDGE_DENSITIES:
-        at = np.interp(
-            np.linspace(0.0, len(arc) - 1.0, count * (len(arc) - 1) + 1), range(len(arc)), arc
-        )
+    """Returns the edge over a curve in parameters, its curve in space as dense as it has to be.
+
+    Points are added where the curve in space is off the surface, and beside such places: a spline
+    through points is off where the surface's own knots bend it.
+    """
+    at = arc
+    for _ in range(DRAWN_EDGE_HALVINGS):
         space = BSpline(*cubic_through(at, _on_surface(surface, flat(at))), 3)
         between = (at[:-1, None] + np.diff(at)[:, None] * BETWEEN).ravel()
-        apart = _on_surface(surface, flat(between)) - space(between)
-        gap = float(np.linalg.norm(apart, axis=1).max())
-        if gap <= settings.DRAWN_EDGE_GAP:
+        apart = np.linalg.norm(_on_surface(surface, flat(between)) - space(between), axis=1)
+        gap = float(apart.max())
+        if gap <= DRAWN_EDGE_GAP:
             return _edge(face, space, flat, gap)
+        is_off = apart.reshape(-1, len(BETWEEN)).max(axis=1) > 0.5 * DRAWN_EDGE_GAP
+        is_near = is_off.copy()
+        is_near[1:] |= is_off[:-1]
+        is_near[:-1] |= is_off[1:]
+        halves = 0.5 * (at[:-1] + at[1:])[is_near]
+        at = np.sort(np.concatenate((at, halves)))
     return None
 
 
@@ -81,7 +97,7 @@ def _parameters(surface: ShapeAnalysis_Surface, points: Floats) -> Floats | None
             at = surface.ValueOfUV(gp_Pnt(*point), settings.CONFUSION)
         else:
             at = surface.NextValueOfUV(at, gp_Pnt(*point), settings.CONFUSION)
-        if surface.Gap() > settings.DRAWN_EDGE_GAP:
+        if surface.Gap() > DRAWN_EDGE_GAP:
             return None
         found.append((at.X(), at.Y()))
     uv = np.array(found)

@@ -86,6 +86,8 @@ class Opening:
     """mm; how far P and Q were from the upper."""
     areas: tuple[float, float, float]
     """mm^2: upper, body, removed."""
+    removed_beside: float
+    """mm^2; what was cut out of the same body for other openings."""
     body_count: int
     """Connected parts of the body."""
     lost_border: float
@@ -105,8 +107,8 @@ class Opening:
 
     @property
     def area_balance(self) -> float:
-        """mm^2: body and removed together, less the upper."""
-        return self.areas[1] + self.areas[2] - self.areas[0]
+        """mm^2: the body and all that was cut out together, less the upper."""
+        return self.areas[1] + self.areas[2] + self.removed_beside - self.areas[0]
 
     @property
     def body(self) -> Face | Shell | Compound:

@@ -9,6 +9,7 @@ where the rails meet in a point or end on the upper's own border.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
@@ -27,6 +28,12 @@ from wrinkle_cad.strip.portable import dot, norm, sin
 from .projection import Feet, UpperFaces
 
 Floats = NDArray[np.float64]
+
+FEET_PER_LENGTH: Final = 1e-3
+"""A rail whose feet on the upper span less than this share of its length stands on it upright."""
+
+STANDING_PER_LENGTH: Final = 1e-8
+"""Feet that follow each other within this share of their whole length are one point."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -76,12 +83,12 @@ def rail_on(upper: UpperFaces, directrix: Directrix, name: str) -> Rail:
     own = polyline_length(given)
     steps = segment_lengths(feet.points)
     length = polyline_length(feet.points)
-    if not length > max(settings.RAIL_LENGTH_MIN, settings.FEET_PER_LENGTH * own):
+    if not length > max(settings.RAIL_LENGTH_MIN, FEET_PER_LENGTH * own):
         raise InputError(
             f"The feet of rail {name} on the upper are one point: the rail is {own:.4g} mm long,"
             f" its feet span {length:.3g} mm. Draw it along the upper."
         )
-    if steps.min() <= settings.STANDING_PER_LENGTH * length:
+    if steps.min() <= STANDING_PER_LENGTH * length:
         at = own * (int(steps.argmin()) + 0.5) / len(steps)
         raise InputError(
             f"Rail {name} stands upright on the upper at {at:.4g} mm of its {own:.4g} mm: its feet"
