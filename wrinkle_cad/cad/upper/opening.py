@@ -29,7 +29,8 @@ class CarveRequest:
     q: Directrix
     """Rail Q."""
     margin: float | None
-    """mm; how far the opening reaches beyond the rails; None: as far as the rails lie from the upper, nothing where that is the tolerance."""
+    """mm; how far the opening reaches beyond the rails; None: as far as they lie from the upper,
+    nothing where that is within the tolerance."""
     fade: float
     """The share of the rails over which the margin grows and dies away."""
     limit: float
