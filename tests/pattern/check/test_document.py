@@ -8,6 +8,7 @@ import sys
 import time
 
 import ezdxf
+import numpy as np
 import pytest
 
 from tests.pattern import strips
@@ -196,3 +197,41 @@ def test_the_limit_lets_a_binary_file_through(document, tmp_path):
     content = path.read_bytes()
     path.write_bytes(content[: len(content) // 2])
     assert refusal(path)
+
+
+def many_lines(path, count):
+    """Contours of a thousand loose lines each, as some programs write them, in the plainest DXF."""
+    turn = 2.0 * np.pi * np.arange(1001) / 1000
+    rows = []
+    for number in range(count // 1000):
+        x = (300 * (number % 10) + 100 * np.cos(turn)).round(4).tolist()
+        y = (300 * (number // 10) + 100 * np.sin(turn)).round(4).tolist()
+        x[-1], y[-1] = x[0], y[0]
+        rows += [
+            f"0\nLINE\n8\nCUT\n10\n{x[i]}\n20\n{y[i]}\n11\n{x[i + 1]}\n21\n{y[i + 1]}\n"
+            for i in range(1000)
+        ]
+    path.write_text("0\nSECTION\n2\nENTITIES\n" + "".join(rows) + "0\nENDSEC\n0\nEOF\n")
+
+
+@pytest.mark.slow
+def test_a_large_honest_drawing_is_judged_quickly(tmp_path):
+    path = tmp_path / "large.dxf"
+    many_lines(path, 60_000)
+    began = time.process_time()
+    report = judge_dxf(path)
+    # 5 s, where ezdxf's reader that mends takes as long for the reading alone.
+    assert time.process_time() - began < 10.0
+    assert report.contour_count == 60_000
+    assert [finding.severity for finding in report.findings] == ["warning"]
+
+
+def test_more_than_can_be_read_in_time_and_memory_is_refused_at_once(tmp_path):
+    path = tmp_path / "vast.dxf"
+    path.write_text(
+        "0\nSECTION\n2\nENTITIES\n" + "  0\nPOINT\n8\nCUT\n" * 120_001 + "0\nENDSEC\n0\nEOF\n"
+    )
+    began = time.process_time()
+    with pytest.raises(InputError, match=r"vast\.dxf holds more than 120,000 lines"):
+        judge_dxf(path)
+    assert time.process_time() - began < 2.0

@@ -39,12 +39,21 @@ def closed_contours(lines: Sequence[FileLine]) -> tuple[list[Floats], Floats]:
     """
     rings = [_ring(line) for line in lines if line.is_closed and len(line.points) > 2]
     loose = _meeting([line.points for line in lines if not line.is_closed and len(line.points) > 1])
-    distinct = {line.normalize().wkb: line for line in map(shapely.LineString, loose)}
-    merged = shapely.line_merge(shapely.MultiLineString(list(distinct.values())))
+    merged = shapely.line_merge(shapely.MultiLineString(_distinct(loose)))
     parts = [part for part in shapely.get_parts(merged) if part.length > limits.ZERO]
     rings += [np.array(part.coords) for part in parts if part.is_closed]
     ends = [part.coords[i] for part in parts if not part.is_closed for i in (0, -1)]
     return rings, np.array(ends, dtype=np.float64).reshape(-1, 2)
+
+
+def _distinct(loose: Sequence[Floats]) -> list[shapely.LineString]:
+    """Returns lines, each once, whichever way it runs."""
+    if not loose:
+        return []
+    index = np.repeat(np.arange(len(loose)), [len(points) for points in loose])
+    lines = shapely.linestrings(np.vstack(loose), indices=index)
+    keys = shapely.to_wkb(shapely.normalize(lines)).tolist()
+    return list(dict(zip(keys, lines.tolist(), strict=True)).values())
 
 
 def _ring(line: FileLine) -> Floats:

@@ -6,11 +6,13 @@ beyond a size are not read, and blocks that would unfold without end are not unf
 
 from __future__ import annotations
 
+import re
 import stat
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
+from itertools import islice
 from pathlib import Path
-from typing import Final
+from typing import Any, Final
 
 import ezdxf
 from ezdxf import recover
@@ -22,6 +24,7 @@ from wrinkle_cad.errors import InputError
 from . import limits
 
 _BINARY: Final = b"AutoCAD Binary DXF\r\n\x1a\x00"
+_ENTITY_START: Final = re.compile(rb"^[ \t]*0[ \t]*\r?$", re.M)
 _MIB: Final = 2**20
 
 
@@ -45,14 +48,11 @@ def open_dxf(path: Path) -> OpenedDxf:
     is_binary = content.startswith(_BINARY)
     if b"SECTION" not in content:
         raise InputError(f"{path.name} has no DXF section in it. Check what kind of file it is.")
+    _check_amount(content, path.name, is_binary=is_binary)
     is_whole = content.rstrip(b"\r\n\t \0\x1a").endswith(b"EOF")
     del content
     try:
-        if is_binary:
-            document = ezdxf.filemanagement.readfile(str(path))
-            auditor = document.audit()
-        else:
-            document, auditor = recover.readfile(path)
+        document, auditor = _loaded(path, is_binary=is_binary)
     # ezdxf raises some twenty classes of errors, bare ones of Python among them, from broken files.
     except Exception as error:
         raise InputError(
@@ -61,6 +61,35 @@ def open_dxf(path: Path) -> OpenedDxf:
     problems = [] if is_whole else ["The file has no EOF at its end: it was cut off."]
     problems += [f"{error.message}." for error in (*auditor.errors, *auditor.fixes)]
     return OpenedDxf(document, tuple(problems))
+
+
+def _check_amount(content: bytes, name: str, *, is_binary: bool) -> None:
+    """Raises InputError for more than can be read in a bearable time and memory."""
+    if is_binary:
+        is_too_much = len(content) > limits.BINARY_LIMIT
+    else:
+        starts = islice(_ENTITY_START.finditer(content), limits.MOST_ENTITIES + 1)
+        is_too_much = content.count(b"\n") > 2 * limits.MOST_TAGS
+        is_too_much |= sum(1 for _ in starts) > limits.MOST_ENTITIES
+    if is_too_much:
+        raise InputError(
+            f"{name} holds more than {limits.MOST_ENTITIES:,} lines, marks and vertices, or as "
+            "much in another form. Export its pieces in several files."
+        )
+
+
+def _loaded(path: Path, *, is_binary: bool) -> tuple[DxfDocument, Any]:
+    """Reads a file; one that is not sound is read again by the slower reader that mends."""
+    try:
+        document = ezdxf.filemanagement.readfile(str(path))
+        auditor = document.audit()
+        if is_binary or not (auditor.errors or auditor.fixes):
+            return document, auditor
+    except Exception:
+        if is_binary:
+            raise
+    document, auditor = recover.readfile(path)
+    return document, auditor
 
 
 def _content(path: Path) -> bytes:

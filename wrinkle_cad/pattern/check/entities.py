@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
+from types import MappingProxyType
 from typing import Final
 
 import numpy as np
@@ -17,6 +19,18 @@ from . import limits
 
 LINES: Final = frozenset({"LINE", "LWPOLYLINE", "POLYLINE", "ARC", "CIRCLE", "ELLIPSE", "SPLINE"})
 _TEXTS: Final = frozenset({"TEXT", "MTEXT", "ATTRIB", "ATTDEF"})
+_PLACES: Final[Mapping[str, tuple[str, ...]]] = MappingProxyType(
+    {
+        "LINE": ("extrusion",),
+        "LWPOLYLINE": ("extrusion",),
+        "POLYLINE": ("extrusion",),
+        "ARC": ("center", "radius", "start_angle", "end_angle", "extrusion"),
+        "CIRCLE": ("center", "radius", "extrusion"),
+        "ELLIPSE": ("center", "major_axis", "ratio", "start_param", "end_param", "extrusion"),
+        "SPLINE": ("extrusion",),
+    }
+)
+"""What ezdxf takes lines apart by, by their kind."""
 _SAGITTA: Final = 0.01
 """mm; how finely curves are taken apart."""
 _SAGITTA_PER_SIZE: Final = 1e-4
@@ -72,6 +86,8 @@ def line_of(entity: DXFEntity, space: str) -> FileLine | None:
         return None
     if kind == "POLYLINE" and not (entity.is_2d_polyline or entity.is_3d_polyline):
         return None
+    if kind == "LINE":
+        return _straight(entity, space)
     stated = _stated_vertices(entity)
     is_curved = kind in ("ARC", "CIRCLE", "ELLIPSE", "SPLINE") or bool(
         getattr(entity, "has_arc", False)
@@ -101,6 +117,26 @@ def line_of(entity: DXFEntity, space: str) -> FileLine | None:
     )
 
 
+def _straight(entity: DXFEntity, space: str) -> FileLine | None:
+    """Returns a LINE, of which a drawing may have a hundred thousand, without detours."""
+    start, end = entity.dxf.start, entity.dxf.end
+    if not _are_usable((*start, *end)):
+        return None
+    points = frozen(((start.x, start.y), (end.x, end.y)))
+    height = max(abs(start.z), abs(end.z))
+    return FileLine(
+        space=space,
+        layer=entity.dxf.layer,
+        kind="LINE",
+        points=points,
+        is_closed=False,
+        vertex_count=2,
+        height=height,
+        is_curved=False,
+        stated=points,
+    )
+
+
 def mark_of(entity: DXFEntity, space: str) -> FileMark | None:
     """Returns an entity as a mark, None if it is a line, or its place is no number."""
     kind = entity.dxftype()
@@ -112,27 +148,26 @@ def mark_of(entity: DXFEntity, space: str) -> FileMark | None:
     named = [name for name in ("location", "insert") if entity.dxf.hasattr(name)]
     place = entity.dxf.get(named[0]) if named else (0.0, 0.0)
     position = (float(place[0]), float(place[1]))
-    if not _is_usable(np.array(position)):
+    if not _are_usable(position):
         return None
     return FileMark(space, entity.dxf.layer, kind, position, text)
 
 
 def _has_place(entity: DXFEntity) -> bool:
     """Whether what ezdxf would take apart has finite numbers: it may not come back from others."""
-    names = (
-        "center", "radius", "start_angle", "end_angle", "major_axis", "ratio", "start_param",
-        "end_param", "extrusion",
-    )  # fmt: skip
     numbers: list[float] = []
-    for name in names:
-        if entity.dxf.is_supported(name):
-            value = entity.dxf.get_default(name)
-            numbers += [value] if isinstance(value, int | float) else list(value or ())
+    for name in _PLACES.get(entity.dxftype(), ()):
+        value = entity.dxf.get_default(name)
+        numbers += [value] if isinstance(value, int | float) else list(value or ())
     if entity.dxftype() == "SPLINE":
         numbers += np.asarray(entity.control_points, dtype=np.float64).reshape(-1).tolist()
         numbers += [*entity.knots, *entity.weights]
         numbers += np.asarray(entity.fit_points, dtype=np.float64).reshape(-1).tolist()
-    return _is_usable(np.array(numbers, dtype=np.float64))
+    return _are_usable(numbers)
+
+
+def _are_usable(numbers: Iterable[float]) -> bool:
+    return all(abs(number) <= settings.LARGEST_COORDINATE for number in numbers)
 
 
 def _is_usable(numbers: Floats) -> bool:
@@ -168,9 +203,7 @@ def _along_spline(entity: DXFEntity) -> Floats:
 
 def _stated_vertices(entity: DXFEntity) -> Floats:
     kind = entity.dxftype()
-    if kind == "LINE":
-        rows = [tuple(entity.dxf.start), tuple(entity.dxf.end)]
-    elif kind == "LWPOLYLINE":
+    if kind == "LWPOLYLINE":
         rows = [tuple(point) for point in entity.vertices_in_wcs()]
     elif kind == "POLYLINE":
         rows = [tuple(point) for point in entity.points_in_wcs()]

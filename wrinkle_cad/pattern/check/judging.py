@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import re
 from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Final
@@ -155,7 +155,7 @@ def _texts(content: DxfContent) -> Iterator[Finding]:
 
 
 def _lines(content: DxfContent) -> Iterator[Finding]:
-    for line in content.lines:
+    for line in _with_short_segments(content.lines):
         first = line.points[: int(line.is_closed)]
         lengths = segment_lengths(np.vstack((line.points, first)))
         short = np.flatnonzero(lengths < limits.ZERO)
@@ -174,7 +174,7 @@ def _lines(content: DxfContent) -> Iterator[Finding]:
                 f"{line.kind} on layer {line.layer} has a segment of {lengths.min():.2g} mm at "
                 f"{_place(at)}. Machines stutter below {limits.SHORTEST:g} mm: simplify.",
             )
-    for key, count in Counter(map(_likeness, content.lines)).items():
+    for key, count in Counter(_likenesses(content.lines)).items():
         if count > 1:
             yield _finding(
                 "duplicate",
@@ -184,9 +184,41 @@ def _lines(content: DxfContent) -> Iterator[Finding]:
             )
 
 
-def _likeness(line: FileLine) -> tuple[str, str, tuple[tuple[float, float], ...]]:
-    """Returns a key that is the same for lines that run through the same points either way."""
-    rows = [(float(x), float(y)) for x, y in np.round(line.points, 4) + 0.0]
+def _with_short_segments(lines: Sequence[FileLine]) -> Iterator[FileLine]:
+    """Yields the lines without any segment, or with one that is short: of most, none is."""
+    if not lines:
+        return
+    counts = np.array([len(line.points) for line in lines])
+    # Of a closed line the segment that closes it counts: each ends with its first point.
+    rings = (np.vstack((line.points, line.points[: int(line.is_closed)])) for line in lines)
+    closed = counts + [int(line.is_closed) for line in lines]
+    points = np.vstack(list(rings))
+    stops = np.cumsum(closed)
+    lengths = np.append(np.hypot(*np.diff(points, axis=0).T), np.inf)
+    # The step from one line to the next is none of either.
+    lengths[stops - 1] = np.inf
+    shortest = np.minimum.reduceat(lengths, stops - closed)
+    for i in np.flatnonzero((shortest < limits.SHORTEST) | (counts < 2)):
+        yield lines[int(i)]
+
+
+_Likeness = tuple[str, str, tuple[tuple[float, float], ...]]
+
+
+def _likenesses(lines: Sequence[FileLine]) -> Iterator[_Likeness]:
+    """Yields for each line a key, the same for lines through the same points either way."""
+    if not lines:
+        return
+    points = (np.round(np.vstack([line.points for line in lines]), 4) + 0.0).tolist()
+    rows = [(x, y) for x, y in points]
+    start = 0
+    for line in lines:
+        stop = start + len(line.points)
+        yield _likeness(line, rows[start:stop])
+        start = stop
+
+
+def _likeness(line: FileLine, rows: list[tuple[float, float]]) -> _Likeness:
     if line.is_closed or (len(rows) > 2 and rows[0] == rows[-1]):
         rows = rows[:-1] if rows[0] == rows[-1] else rows
         first = rows.index(min(rows))

@@ -17,6 +17,15 @@ SHORTEST: Final = 0.01
 FILE_LIMIT: Final = 32 * 2**20
 """Bytes; the largest DXF file that is judged: reading takes some 35 times as much memory."""
 
+BINARY_LIMIT: Final = FILE_LIMIT // 3
+"""Bytes of the largest binary one, which says more in fewer bytes."""
+
+MOST_ENTITIES: Final = 120_000
+"""Lines, points, texts and vertices of a file that is read: as many take ten seconds and 440 MB."""
+
+MOST_TAGS: Final = 2_000_000
+"""Pairs of lines of its text, likewise."""
+
 MOST_UNFOLDED: Final = 50_000
 """Lines and marks that a drawing's blocks may make where they are inserted."""
 

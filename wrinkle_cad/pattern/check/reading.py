@@ -6,7 +6,9 @@ ASTM D6673) every block stays by itself, as it is a piece.
 
 from __future__ import annotations
 
+import gc
 from collections.abc import Iterable, Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Final
@@ -26,6 +28,8 @@ ENTITIES: Final = "ENTITIES"
 """The space of what does not stand in a block."""
 
 _PIECE_KEYS: Final = ("piece name:", "size:", "quantity:")
+_SIMPLE: Final = frozenset({"LINE", "POINT", "TEXT", "ARC", "CIRCLE", "LWPOLYLINE"})
+"""Kinds that stand for themselves: most of what a drawing holds."""
 _PLANAR: Final = ("LWPOLYLINE", "POLYLINE", "ARC", "CIRCLE", "ELLIPSE")
 
 
@@ -83,6 +87,23 @@ def read_dxf(path: Path) -> DxfContent:
     Raises:
         InputError: it cannot be read, is no DXF file, or would unfold without end.
     """
+    with _collector_at_rest():
+        return _content(path)
+
+
+@contextmanager
+def _collector_at_rest() -> Iterator[None]:
+    """Keeps Python from looking for garbage while a million small objects are made, all in use."""
+    was_enabled = gc.isenabled()
+    gc.disable()
+    try:
+        yield
+    finally:
+        if was_enabled:
+            gc.enable()
+
+
+def _content(path: Path) -> DxfContent:
     opened = open_dxf(path)
     document = opened.document
     blocks = tuple(
@@ -156,11 +177,19 @@ def _spaces(
     document: DxfDocument, blocks: Iterable[str], *, is_blocks: bool
 ) -> Iterator[tuple[str, Iterable[DXFEntity]]]:
     if not is_blocks:
-        yield ENTITIES, disassemble.recursive_decompose(document.modelspace())
+        yield ENTITIES, _taken_apart(document.modelspace())
         return
     yield ENTITIES, document.modelspace().query("* !INSERT")
     for name in blocks:
         yield name, document.blocks.get(name)
+
+
+def _taken_apart(entities: Iterable[DXFEntity]) -> Iterator[DXFEntity]:
+    for entity in entities:
+        if entity.dxftype() in _SIMPLE:
+            yield entity
+        else:
+            yield from disassemble.recursive_decompose((entity,))
 
 
 def _collect(
