@@ -93,6 +93,23 @@ def test_beside_the_folders_stand_five_modules() -> None:
     assert folders | ROOT_MODULES == {*LAYER, "__init__"}
 
 
+def test_the_readme_has_every_folder_on_its_layer() -> None:
+    readme = (PACKAGE.parent / "README.md").read_text(encoding="utf-8")
+    table = readme.split("## How the code is laid out")[1].split("\n\n")[1]
+    rows = [[cell.strip() for cell in row.strip("|").split("|")] for row in table.splitlines()[2:]]
+    layers = {}
+    named = set()
+    for names, _, layer in rows:
+        first, *others = [name.strip("`").removesuffix(".py") for name in names.split(", ")]
+        here = first.split("/")[0]
+        for name in (first, *others):
+            layers[name.split("/")[0] if name.strip("/") in LAYER else here] = int(layer)
+            named |= {name.strip("/"), f"{here}/{name.strip('/')}"}
+    assert layers == {name: layer for name, layer in LAYER.items() if name != "__main__"}
+    rooms = {path.relative_to(PACKAGE).parent for path in PACKAGE.glob("*/*/__init__.py")}
+    assert {room.as_posix() for room in rooms} <= named
+
+
 def test_imports_point_down() -> None:
     faults = []
     for path in MODULES:

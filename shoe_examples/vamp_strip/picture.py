@@ -14,7 +14,7 @@ mpl.use("Agg")
 import matplotlib.pyplot as plt
 from build123d import import_step
 
-from wrinkle_cad import WrinkleStrip
+from wrinkle_cad import PieceSettings, WrinkleStrip
 
 HERE = Path(__file__).parent
 sys.path.insert(0, str(HERE.parent))
@@ -33,7 +33,7 @@ def main() -> None:
     top = figure.add_axes((0.0, 0.45, 1.0, 0.55))
     top.imshow(plt.imread(space))
     top.set_axis_off()
-    strip.plot_pattern(figure.add_axes((0.05, 0.06, 0.6, 0.36)))
+    strip.plot_pattern(figure.add_axes((0.05, 0.06, 0.6, 0.36)), PieceSettings(rulings=True))
     strip.plot_validity(figure.add_axes((0.7, 0.06, 0.28, 0.36)))
     figure.savefig(space)
     print(f"{space.name}: {strip!r}")

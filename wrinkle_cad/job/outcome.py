@@ -61,7 +61,7 @@ class JobFailed:
     job: Job
     """The settings that were used."""
     phase: str
-    """The phase in which it failed ("read", "sample", "search", "surface", "write", ...)."""
+    """The phase in which it failed ("read", "strip", "surface", "pattern", "judge", "write", "page")."""
     error: str
     """Name of the error's class."""
     message: str
