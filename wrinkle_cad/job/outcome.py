@@ -61,7 +61,8 @@ class JobFailed:
     job: Job
     """The settings that were used."""
     phase: str
-    """The phase in which it failed ("read", "strip", "surface", "pattern", "judge", "write", "page")."""
+    """The phase in which it failed: "read", "strip", "surface", "pattern", "judge", "write" or
+    "page"."""
     error: str
     """Name of the error's class."""
     message: str

@@ -75,7 +75,7 @@ def failure_of(job: Job, ending: Ending, limits: CrewLimits) -> JobFailed:
     error, message = _cause(ending, limits)
     return JobFailed(
         job=job,
-        phase=(ending.phase or "worker") if error == _confessed(ending) else "worker",
+        phase=(ending.phase or "worker") if error == _raised_name(ending) else "worker",
         error=error,
         message=message,
         seconds={"total": ending.seconds},
@@ -114,14 +114,14 @@ def _cause(ending: Ending, limits: CrewLimits) -> tuple[str, str]:
 def _hit_memory(ending: Ending, limits: CrewLimits) -> bool:
     if limits.memory_bytes is None:
         return False
-    if _confessed(ending) in MEMORY_ERRORS:
+    if _raised_name(ending) in MEMORY_ERRORS:
         # With a limit set, Python is refused memory by nothing else.
         return True
     is_memory_signal = ending.exit_code is not None and -ending.exit_code in _MEMORY_SIGNALS
     return is_memory_signal and ending.peak_bytes > settings.BATCH_MEMORY_HIT * limits.memory_bytes
 
 
-def _confessed(ending: Ending) -> str:
+def _raised_name(ending: Ending) -> str:
     return "" if ending.fault is None else ending.fault.error
 
 
