@@ -13,8 +13,8 @@ from wrinkle_cad.batch.folder.conversion import ConversionOptions, convert
 from wrinkle_cad.batch.folder.events import BatchEvent, BatchSummary
 from wrinkle_cad.batch.folder.inputs import find_sources
 from wrinkle_cad.batch.folder.plan import plan_batch
-from wrinkle_cad.batch.workers.crew import WorkerCrew
-from wrinkle_cad.batch.workers.ending import CrewLimits
+from wrinkle_cad.batch.workers.ending import WorkerLimits
+from wrinkle_cad.batch.workers.pool import WorkerPool
 
 
 class Bench:
@@ -36,16 +36,16 @@ class Bench:
         self,
         *,
         workers: int = 1,
-        limits: CrewLimits | None = None,
+        limits: WorkerLimits | None = None,
         keywords: dict[str, object] | None = None,
         **options: object,
     ) -> BatchSummary:
         self.events = []
         sources = find_sources([str(self.inputs)], self.outputs)
         planned = plan_batch(sources.files, self.outputs, keywords=keywords)
-        crew = WorkerCrew(workers, limits or CrewLimits())
+        pool = WorkerPool(workers, limits or WorkerLimits())
         chosen = ConversionOptions(**{"job_function": job_by_content, **options})  # type: ignore[arg-type]
-        return convert(planned, self.outputs, crew, self.events.append, chosen)
+        return convert(planned, self.outputs, pool, self.events.append, chosen)
 
     def files(self) -> dict[str, bytes]:
         """Everything under a final name (hidden ones are not), without the batch's own files."""

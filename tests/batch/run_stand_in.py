@@ -13,8 +13,8 @@ from wrinkle_cad.batch.folder.conversion import ConversionOptions, convert
 from wrinkle_cad.batch.folder.events import BatchEvent
 from wrinkle_cad.batch.folder.inputs import find_sources
 from wrinkle_cad.batch.folder.plan import plan_batch
-from wrinkle_cad.batch.workers.crew import WorkerCrew
-from wrinkle_cad.batch.workers.ending import CrewLimits
+from wrinkle_cad.batch.workers.ending import WorkerLimits
+from wrinkle_cad.batch.workers.pool import WorkerPool
 
 
 def main(inputs: str, outputs: str, function: str, workers: str) -> None:
@@ -26,7 +26,7 @@ def main(inputs: str, outputs: str, function: str, workers: str) -> None:
         sys.stdout.write(f"{type(event).__name__}\n")
         sys.stdout.flush()
 
-    convert(planned, folder, WorkerCrew(int(workers), CrewLimits()), listen, options)
+    convert(planned, folder, WorkerPool(int(workers), WorkerLimits()), listen, options)
 
 
 if __name__ == "__main__":

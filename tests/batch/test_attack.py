@@ -137,13 +137,13 @@ def fenced(bench: Bench, tmp_path: Path) -> dict[str, tuple[int, int, str]]:
 
 def check(bench: Bench, tmp_path: Path, items: list[Item], seconds: float) -> None:
     """Good files done, one line per bad one, nothing outside the output folder changed."""
-    from wrinkle_cad.batch.workers.ending import CrewLimits
+    from wrinkle_cad.batch.workers.ending import WorkerLimits
 
     (tmp_path / "fence").mkdir()
     (tmp_path / "fence" / "victim").write_text("somebody's")
     before = fenced(bench, tmp_path)
     start = time.process_time()
-    summary = bench.run(workers=2, limits=CrewLimits(timeout_s=seconds))
+    summary = bench.run(workers=2, limits=WorkerLimits(timeout_s=seconds))
     assert time.process_time() - start < 10.0
     failures = [
         event.record.message

@@ -19,8 +19,8 @@ from wrinkle_cad.batch.folder.conversion import ConversionOptions, convert
 from wrinkle_cad.batch.folder.events import BatchSummary
 from wrinkle_cad.batch.folder.inputs import find_sources
 from wrinkle_cad.batch.folder.plan import plan_batch
-from wrinkle_cad.batch.workers.crew import WorkerCrew
-from wrinkle_cad.batch.workers.ending import CrewLimits
+from wrinkle_cad.batch.workers.ending import WorkerLimits
+from wrinkle_cad.batch.workers.pool import WorkerPool
 from wrinkle_cad.files.staging import READY_PREFIX
 
 ROOT = Path(__file__).parent.parent.parent
@@ -48,8 +48,8 @@ def run(inputs: Path, folder: Path, *, workers: int, backwards: bool = False) ->
         find_sources([str(inputs)], folder).files, folder, keywords={"source_date_epoch": EPOCH}
     )
     ordered = planned[::-1] if backwards else planned
-    crew = WorkerCrew(workers, CrewLimits())
-    return convert(ordered, folder, crew, lambda _: None, ConversionOptions())
+    pool = WorkerPool(workers, WorkerLimits())
+    return convert(ordered, folder, pool, lambda _: None, ConversionOptions())
 
 
 def outputs_of(folder: Path) -> dict[str, bytes]:

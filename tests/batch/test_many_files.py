@@ -13,8 +13,8 @@ from wrinkle_cad.batch.folder.conversion import convert
 from wrinkle_cad.batch.folder.events import BatchEvent, FileFinished
 from wrinkle_cad.batch.folder.inputs import find_sources
 from wrinkle_cad.batch.folder.plan import plan_batch
-from wrinkle_cad.batch.workers.crew import WorkerCrew
-from wrinkle_cad.batch.workers.ending import CrewLimits
+from wrinkle_cad.batch.workers.ending import WorkerLimits
+from wrinkle_cad.batch.workers.pool import WorkerPool
 
 FILES = 300
 BAD = (b"", b"not a step file", b"ISO-10303-21;\nHEADER;\n")
@@ -40,7 +40,7 @@ def test_300_files_with_15_bad_ones(tmp_path: Path, record_property: pytest.Reco
     out = tmp_path / "out"
     sources = find_sources([str(tmp_path / "in")], out).files
     planned = plan_batch(sources, out, keywords={"tolerance": 0.3})
-    summary = convert(planned, out, WorkerCrew(2, CrewLimits()), listen)
+    summary = convert(planned, out, WorkerPool(2, WorkerLimits()), listen)
     assert {name: text for name, text in failed.items() if name not in bad} == {}
     assert set(failed) == bad
     assert (summary.done, summary.failed, summary.left) == (FILES - len(bad), len(bad), 0)

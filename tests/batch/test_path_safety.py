@@ -14,8 +14,8 @@ from tests.batch.strips import EXAMPLE
 from wrinkle_cad.batch.folder.conversion import convert
 from wrinkle_cad.batch.folder.inputs import find_sources
 from wrinkle_cad.batch.folder.plan import plan_batch
-from wrinkle_cad.batch.workers.crew import WorkerCrew
-from wrinkle_cad.batch.workers.ending import CrewLimits
+from wrinkle_cad.batch.workers.ending import WorkerLimits
+from wrinkle_cad.batch.workers.pool import WorkerPool
 
 HOSTILE_LABELS = (
     "../../x",
@@ -106,7 +106,7 @@ def test_labels_in_real_files_never_become_paths(
         (bench.inputs / f"strip{number:02d}.step").write_text(renamed)
     before = everything_below(tmp_path)
     planned = plan_batch(find_sources([str(bench.inputs)], bench.outputs).files, bench.outputs)
-    summary = convert(planned, bench.outputs, WorkerCrew(2, CrewLimits()), lambda _: None)
+    summary = convert(planned, bench.outputs, WorkerPool(2, WorkerLimits()), lambda _: None)
     lines = (bench.outputs / "manifest.jsonl").read_text().splitlines()
     messages = [json.loads(line)["message"] for line in lines[1:]]
     assert summary.done == len(HOSTILE_LABELS), messages

@@ -6,7 +6,7 @@ from tests.batch.conftest import Bench
 from tests.batch.real_faults import faulty_job
 from tests.batch.strips import EXAMPLE
 from wrinkle_cad.batch.folder.events import FileFinished
-from wrinkle_cad.batch.workers.ending import CrewLimits
+from wrinkle_cad.batch.workers.ending import WorkerLimits
 from wrinkle_cad.job.workflow import _PHASES as PHASES
 
 ROOMS = (0, 1000, 15_000, 100_000, 300_000)
@@ -18,7 +18,7 @@ def test_a_fault_in_any_phase_of_the_real_job_costs_one_file(bench: Bench) -> No
     names = [f"cad-{phase}" for phase in PHASES] + [f"room-{room}" for room in ROOMS]
     bench.put(**dict.fromkeys([*names, *CRASHES, "good", "z_good"], text))
     summary = bench.run(
-        workers=2, job_function=faulty_job, limits=CrewLimits(timeout_s=300, memory_gib=3)
+        workers=2, job_function=faulty_job, limits=WorkerLimits(timeout_s=300, memory_gib=3)
     )
     assert summary.done == 2
     records = {

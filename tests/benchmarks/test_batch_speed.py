@@ -14,8 +14,8 @@ from wrinkle_cad.batch.folder.conversion import convert
 from wrinkle_cad.batch.folder.events import BatchEvent, FileFinished, Listener
 from wrinkle_cad.batch.folder.inputs import find_sources
 from wrinkle_cad.batch.folder.plan import plan_batch
-from wrinkle_cad.batch.workers.crew import WorkerCrew
-from wrinkle_cad.batch.workers.ending import CrewLimits
+from wrinkle_cad.batch.workers.ending import WorkerLimits
+from wrinkle_cad.batch.workers.pool import WorkerPool
 from wrinkle_cad.job.job import Job
 from wrinkle_cad.job.outcome import JobDone
 from wrinkle_cad.job.workflow import run_job
@@ -26,7 +26,7 @@ WARM_UP = 4
 
 def batch(inputs: Path, folder: Path, workers: int, listener: Listener) -> None:
     planned = plan_batch(find_sources([str(inputs)], folder).files, folder)
-    summary = convert(planned, folder, WorkerCrew(workers, CrewLimits()), listener)
+    summary = convert(planned, folder, WorkerPool(workers, WorkerLimits()), listener)
     assert summary.done == FILES
 
 

@@ -27,8 +27,8 @@ from wrinkle_cad.batch.folder.events import BatchEvent, FileFinished
 from wrinkle_cad.batch.folder.inputs import find_sources
 from wrinkle_cad.batch.folder.manifest import Record
 from wrinkle_cad.batch.folder.plan import plan_batch
-from wrinkle_cad.batch.workers.crew import WorkerCrew
-from wrinkle_cad.batch.workers.ending import CrewLimits
+from wrinkle_cad.batch.workers.ending import WorkerLimits
+from wrinkle_cad.batch.workers.pool import WorkerPool
 from wrinkle_cad.files.names import CAD_SUFFIXES
 from wrinkle_cad.files.staging import leftovers
 
@@ -104,9 +104,9 @@ def run(
             records.append(event.record)
 
     planned = plan_batch(find_sources([str(inputs)], outputs).files, outputs)
-    crew = WorkerCrew(workers, CrewLimits(timeout_s=timeout_s))
+    pool = WorkerPool(workers, WorkerLimits(timeout_s=timeout_s))
     start = time.monotonic()
-    convert(planned, outputs, crew, listen)
+    convert(planned, outputs, pool, listen)
     figures.seconds = time.monotonic() - start
     for record in records:
         judge(record, figures, timeout_s)

@@ -8,8 +8,8 @@ from __future__ import annotations
 import sys
 from dataclasses import replace
 
-from wrinkle_cad.batch.executor import make_crew, run_tasks
-from wrinkle_cad.batch.workers.crew import Finished, Phase
+from wrinkle_cad.batch.executor import make_pool, run_tasks
+from wrinkle_cad.batch.workers.pool import Finished, Phase
 from wrinkle_cad.batch.workers.task import JobFunction, Task
 from wrinkle_cad.files.staging import clear_abandoned
 from wrinkle_cad.job.job import Job
@@ -44,19 +44,19 @@ def run_alone(
     """
     if sys.platform == "win32":
         return run_job(job, progress=progress)
-    crew = make_crew(executor=None, workers=1, timeout=timeout, memory=memory)
+    pool = make_pool(executor=None, workers=1, timeout=timeout, memory=memory)
     here = replace(job, input=job.input.absolute(), output_dir=job.output_dir.absolute())
     clear_abandoned(here.output_dir)
     try:
-        for event in run_tasks(crew, iter([(0, Task(job=here, job_function=job_function))])):
+        for event in run_tasks(pool, iter([(0, Task(job=here, job_function=job_function))])):
             if isinstance(event, Finished):
                 return _as_asked(job, event.result.outcome)
             if isinstance(event, Phase) and progress is not None:
                 progress(event.name, event.done, event.total)
     finally:
-        crew.kill()
+        pool.kill()
         clear_abandoned(here.output_dir)
-    raise AssertionError("a crew that is busy finishes its task")
+    raise AssertionError("a pool that is busy finishes its task")
 
 
 def _as_asked(job: Job, outcome: JobDone | JobFailed) -> JobDone | JobFailed:

@@ -12,9 +12,9 @@ from typing import Final
 
 from wrinkle_cad import settings
 from wrinkle_cad.batch.folder.delivery import deliver
-from wrinkle_cad.batch.workers.crew import Crew, Event, Finished, WorkerCrew
-from wrinkle_cad.batch.workers.ending import CrewLimits
-from wrinkle_cad.batch.workers.executor_crew import ExecutorCrew
+from wrinkle_cad.batch.workers.ending import WorkerLimits
+from wrinkle_cad.batch.workers.executor_pool import ExecutorPool
+from wrinkle_cad.batch.workers.pool import Event, Finished, Pool, WorkerPool
 from wrinkle_cad.batch.workers.task import JobFunction, Task
 from wrinkle_cad.errors import InputError
 from wrinkle_cad.files.names import collision_key
@@ -71,31 +71,31 @@ def run_batch(
     """
     todo = tuple(jobs)
     _check_distinct(todo)
-    crew = make_crew(executor=executor, workers=workers, timeout=timeout, memory=memory)
+    pool = make_pool(executor=executor, workers=workers, timeout=timeout, memory=memory)
     outcomes: dict[int, JobDone | JobFailed] = {}
     stagings: dict[int, Path] = {}
     try:
-        for event in run_tasks(crew, _tasks(todo, stagings, outcomes, job_function)):
+        for event in run_tasks(pool, _tasks(todo, stagings, outcomes, job_function)):
             if isinstance(event, Finished):
                 staging = stagings.pop(event.key)
                 outcomes[event.key] = deliver(todo[event.key], staging, event.result)
-        crew.close()
+        pool.close()
     finally:
-        crew.kill()
+        pool.kill()
         for staging in stagings.values():
             discard_staging(staging)
     return tuple(outcomes[key] for key in range(len(todo)))
 
 
-def make_crew(
+def make_pool(
     *,
     executor: Executor | None,
     workers: int | None,
     timeout: float | None,
     memory: float | None,
     in_flight: int = settings.BATCH_IN_FLIGHT,
-) -> Crew:
-    """Makes the crew that `run_batch`'s arguments ask for.
+) -> Pool:
+    """Makes the pool that `run_batch`'s arguments ask for.
 
     Raises:
         InputError: a limit is out of its range or was given together with an executor.
@@ -107,7 +107,7 @@ def make_crew(
                     f"{name} cannot be {value:g} together with an executor, where it is not kept:"
                     " set it up in the executor, or leave the executor out."
                 )
-        return ExecutorCrew(executor, in_flight)
+        return ExecutorPool(executor, in_flight)
     if sys.platform == "win32":
         raise InputError(
             "The limits of worker processes need Linux or macOS. On this system, give run_batch an"
@@ -115,35 +115,35 @@ def make_crew(
         )
     if workers is not None and workers < 1:
         raise InputError(f"workers cannot be {workers}: give at least 1.")
-    limits = CrewLimits(
+    limits = WorkerLimits(
         timeout_s=settings.BATCH_TIMEOUT_S if timeout is None else timeout,
         memory_gib=settings.BATCH_MEMORY_GIB if memory is None else memory,
     )
-    return WorkerCrew(workers or core_count(), limits)
+    return WorkerPool(workers or core_count(), limits)
 
 
-def run_tasks(crew: Crew, tasks: Iterator[tuple[int, Task] | None]) -> Iterator[Event]:
-    """Keeps a crew busy until the tasks are used up; tasks are asked for as room is made.
+def run_tasks(pool: Pool, tasks: Iterator[tuple[int, Task] | None]) -> Iterator[Event]:
+    """Keeps a pool busy until the tasks are used up; tasks are asked for as room is made.
 
     Args:
-        crew: who does the work.
+        pool: who does the work.
         tasks: number and task, or None for "nothing yet, ask again", so that a long search for the
-            next task does not keep the crew waiting.
+            next task does not keep the pool waiting.
 
     Yields:
         What happens.
     """
     is_more = True
-    while is_more or crew.is_busy():
-        if is_more and crew.has_room():
+    while is_more or pool.is_busy():
+        if is_more and pool.has_room():
             following = next(tasks, _END)
             if isinstance(following, _End):
                 is_more = False
             elif following is not None:
-                crew.give(*following)
-        if crew.is_busy():
-            is_idle = is_more and crew.has_room()
-            yield from crew.wait(0.0 if is_idle else settings.BATCH_TICK_S)
+                pool.give(*following)
+        if pool.is_busy():
+            is_idle = is_more and pool.has_room()
+            yield from pool.wait(0.0 if is_idle else settings.BATCH_TICK_S)
 
 
 def core_count() -> int:

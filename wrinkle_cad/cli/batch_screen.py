@@ -11,7 +11,7 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import Any, Final, TextIO
 
-from wrinkle_cad.batch.executor import make_crew
+from wrinkle_cad.batch.executor import make_pool
 from wrinkle_cad.batch.folder.conversion import ConversionOptions, convert
 from wrinkle_cad.batch.folder.events import (
     BatchEvent,
@@ -26,7 +26,7 @@ from wrinkle_cad.batch.folder.inputs import find_sources
 from wrinkle_cad.batch.folder.plan import PlannedJob, plan_batch
 from wrinkle_cad.batch.folder.rehearsal import DONE_BEFORE, TO_DO, rehearse
 from wrinkle_cad.batch.folder.summary_table import total_seconds
-from wrinkle_cad.batch.workers.crew import Crew
+from wrinkle_cad.batch.workers.pool import Pool
 from wrinkle_cad.errors import InputError
 from wrinkle_cad.job.job import read_job_toml
 
@@ -104,14 +104,14 @@ def _convert(given: argparse.Namespace, planned: tuple[PlannedJob, ...], folder:
     counter = _Counter()
     try:
         with ExitStack() as stack:
-            crew = stack.enter_context(_crew(given))
+            pool = stack.enter_context(_pool(given))
             shown = stack.enter_context(_listener(given, len(planned)))
 
             def listen(event: BatchEvent) -> None:
                 counter.count(event)
                 shown(event)
 
-            summary = convert(planned, folder, crew, listen, options)
+            summary = convert(planned, folder, pool, listen, options)
     except KeyboardInterrupt:
         _say(
             sys.stderr,
@@ -125,14 +125,14 @@ def _convert(given: argparse.Namespace, planned: tuple[PlannedJob, ...], folder:
 
 
 @contextmanager
-def _crew(given: argparse.Namespace) -> Iterator[Crew]:
+def _pool(given: argparse.Namespace) -> Iterator[Pool]:
     limits = {"workers": given.workers, "timeout": given.timeout, "memory": given.memory}
     if given.scheduler is None:
         if given.ship_bytes:
             raise InputError(
                 "--ship-bytes needs --scheduler, else there is nowhere to ship to: leave it out."
             )
-        yield make_crew(executor=None, **limits)
+        yield make_pool(executor=None, **limits)
         return
     for name, value in limits.items():
         if value is not None:
@@ -143,7 +143,7 @@ def _crew(given: argparse.Namespace) -> Iterator[Crew]:
     from wrinkle_cad.batch.workers.cluster import cluster_executor
 
     with cluster_executor(given.scheduler) as (executor, in_flight):
-        yield make_crew(executor=executor, in_flight=in_flight, **limits)
+        yield make_pool(executor=executor, in_flight=in_flight, **limits)
 
 
 class _Counter:

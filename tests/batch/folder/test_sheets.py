@@ -20,7 +20,7 @@ from wrinkle_cad.batch.folder.events import BatchSummary
 from wrinkle_cad.batch.folder.inputs import find_sources
 from wrinkle_cad.batch.folder.lock import LOCK_NAME
 from wrinkle_cad.batch.folder.plan import plan_batch
-from wrinkle_cad.batch.workers.executor_crew import ExecutorCrew
+from wrinkle_cad.batch.workers.executor_pool import ExecutorPool
 from wrinkle_cad.errors import InputError
 from wrinkle_cad.job.job import Job
 from wrinkle_cad.job.outcome import JobDone, JobFailed, Progress
@@ -53,9 +53,9 @@ def run(bench: Bench, *, keywords: dict[str, object] = SHEET, workers: int = 1) 
     sources = find_sources([str(bench.inputs)], bench.outputs)
     planned = plan_batch(sources.files, bench.outputs, keywords=keywords)
     with ThreadPoolExecutor(workers) as pool:
-        crew = ExecutorCrew(pool, workers)
+        pool = ExecutorPool(pool, workers)
         options = ConversionOptions(job_function=strap_job)
-        return convert(planned, bench.outputs, crew, bench.events.append, options)
+        return convert(planned, bench.outputs, pool, bench.events.append, options)
 
 
 def sheets(bench: Bench) -> dict[str, bytes]:

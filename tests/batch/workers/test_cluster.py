@@ -11,7 +11,7 @@ from distributed import LocalCluster
 
 from tests.batch.conftest import Bench
 from tests.batch.stand_ins import KINDS, job_by_content
-from wrinkle_cad.batch.executor import make_crew
+from wrinkle_cad.batch.executor import make_pool
 from wrinkle_cad.batch.folder.conversion import ConversionOptions, convert
 from wrinkle_cad.batch.folder.events import BatchSummary, FileFinished
 from wrinkle_cad.batch.folder.inputs import find_sources
@@ -38,10 +38,10 @@ def run(bench: Bench, scheduler: str, *, ship_bytes: bool) -> BatchSummary:
     options = ConversionOptions(job_function=job_by_content, ship_bytes=ship_bytes)
     with cluster_executor(scheduler) as (executor, in_flight):
         assert in_flight == 4
-        crew = make_crew(
+        pool = make_pool(
             executor=executor, workers=None, timeout=None, memory=None, in_flight=in_flight
         )
-        return convert(planned, bench.outputs, crew, bench.events.append, options)
+        return convert(planned, bench.outputs, pool, bench.events.append, options)
 
 
 @pytest.mark.parametrize("ship_bytes", [False, True])

@@ -10,7 +10,7 @@ from pathlib import Path
 
 from wrinkle_cad import settings
 from wrinkle_cad.batch.executor import run_tasks
-from wrinkle_cad.batch.workers.crew import Crew, Finished, Phase
+from wrinkle_cad.batch.workers.pool import Finished, Phase, Pool
 from wrinkle_cad.batch.workers.task import JobFunction, Task, TaskResult
 from wrinkle_cad.errors import ExportError, WrinkleError
 from wrinkle_cad.files.names import printable
@@ -52,7 +52,7 @@ class ConversionOptions:
 def convert(
     planned: Sequence[PlannedJob],
     folder: Path,
-    crew: Crew,
+    pool: Pool,
     listener: Listener,
     options: ConversionOptions | None = None,
 ) -> BatchSummary:
@@ -61,7 +61,7 @@ def convert(
     Args:
         planned: from `plan_batch`, with the same folder.
         folder: receives the outputs, the manifest, the log, the summary; made when missing.
-        crew: who does the work; ended when this returns or raises.
+        pool: who does the work; ended when this returns or raises.
         listener: is told what happens, in this thread.
         options: how to go about it.
 
@@ -75,7 +75,7 @@ def convert(
             folder.mkdir(parents=True, exist_ok=True)
             with locked_folder(folder):
                 set_aside = check_own_files(folder)
-                return _Conversion(planned, folder, crew, listener, options).run(set_aside)
+                return _Conversion(planned, folder, pool, listener, options).run(set_aside)
         except BrokenPipeError:
             # The listener's: whoever read our lines went away.
             raise
@@ -83,7 +83,7 @@ def convert(
             message = f"{error.strerror or error}. Give a folder that can be written, with room."
             raise ExportError(folder, "folder", message) from error
     finally:
-        crew.kill()
+        pool.kill()
 
 
 def base_record(entry: PlannedJob, versions: Mapping[str, str]) -> Record:
@@ -129,13 +129,13 @@ class _Conversion:
         self,
         planned: Sequence[PlannedJob],
         folder: Path,
-        crew: Crew,
+        pool: Pool,
         listener: Listener,
         options: ConversionOptions | None,
     ) -> None:
         self._planned = planned
         self._folder = folder
-        self._crew = crew
+        self._pool = pool
         self._tell = listener
         self._options = options or ConversionOptions()
         self._versions = installed_versions()
@@ -185,14 +185,14 @@ class _Conversion:
             self._pages.write(*self._state(is_over=True))
 
     def _work(self) -> None:
-        for event in run_tasks(self._crew, self._tasks()):
+        for event in run_tasks(self._pool, self._tasks()):
             if isinstance(event, Phase):
                 label = self._planned[event.key].source.label
                 self._tell(FilePhase(label, event.name, event.done, event.total))
             elif isinstance(event, Finished):
                 self._finish(event.key, event.result)
             self._pages.write_if_due(self._state)
-        self._crew.close()
+        self._pool.close()
 
     def _nest(self) -> None:
         """Puts the pieces of all files on sheets, where these are wanted."""

@@ -21,7 +21,7 @@ MEMORY_ERRORS: Final = ("MemoryError", "_ArrayMemoryError")
 
 
 @dataclass(frozen=True, slots=True)
-class CrewLimits:
+class WorkerLimits:
     """Limits of one job; None is no limit."""
 
     timeout_s: float | None = settings.BATCH_TIMEOUT_S
@@ -70,7 +70,7 @@ class Ending:
     """The end of what it wrote to stderr."""
 
 
-def failure_of(job: Job, ending: Ending, limits: CrewLimits) -> JobFailed:
+def failure_of(job: Job, ending: Ending, limits: WorkerLimits) -> JobFailed:
     """Names the signal or the limit that ended a worker."""
     error, message = _cause(ending, limits)
     return JobFailed(
@@ -83,7 +83,7 @@ def failure_of(job: Job, ending: Ending, limits: CrewLimits) -> JobFailed:
     )
 
 
-def _cause(ending: Ending, limits: CrewLimits) -> tuple[str, str]:
+def _cause(ending: Ending, limits: WorkerLimits) -> tuple[str, str]:
     where = f" in phase {ending.phase}" if ending.phase else " before the first phase"
     if ending.is_late:
         return "TimeLimit", (
@@ -111,7 +111,7 @@ def _cause(ending: Ending, limits: CrewLimits) -> tuple[str, str]:
     )
 
 
-def _hit_memory(ending: Ending, limits: CrewLimits) -> bool:
+def _hit_memory(ending: Ending, limits: WorkerLimits) -> bool:
     if limits.memory_bytes is None:
         return False
     if _raised_name(ending) in MEMORY_ERRORS:

@@ -83,9 +83,9 @@ def serve(tasks: Connection, stderr: Connection, memory_bytes: int | None, paren
             task: Task = tasks.recv()
         except EOFError:
             return
-        with _Confessing(tasks):
+        with _FaultReport(tasks):
             tasks.send(Began())
-            tasks.send(run_task(task, _phase_teller(tasks)))
+            tasks.send(run_task(task, _phase_sender(tasks)))
 
 
 def end_with_parent(parent_pid: int) -> None:
@@ -118,7 +118,7 @@ def peak_bytes(pid: int | str = "self") -> int:
     return 0
 
 
-class _Confessing:
+class _FaultReport:
     """Tells the parent about an exception that leaves the block; does not hold it up."""
 
     def __init__(self, tasks: Connection) -> None:
@@ -159,7 +159,7 @@ def _limit_memory(memory_bytes: int | None) -> None:
         resource.setrlimit(resource.RLIMIT_AS, (soft, hard))
 
 
-def _phase_teller(tasks: Connection) -> Callable[[str, int, int], None]:
+def _phase_sender(tasks: Connection) -> Callable[[str, int, int], None]:
     last_name, last_time = "", 0.0
 
     def tell(name: str, done: int, total: int) -> None:

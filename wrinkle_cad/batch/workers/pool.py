@@ -22,7 +22,7 @@ from typing import Final, Protocol
 from wrinkle_cad import settings
 from wrinkle_cad.job.outcome import JobDone
 
-from .ending import MEMORY_ERRORS, CrewLimits, Ending, failure_of
+from .ending import MEMORY_ERRORS, Ending, WorkerLimits, failure_of
 from .task import Task, TaskResult
 from .worker import Began, PhaseReached, WorkerFault, peak_bytes, serve
 
@@ -57,7 +57,7 @@ class Finished:
 Event = Phase | Finished
 
 
-class Crew(Protocol):
+class Pool(Protocol):
     """Whoever runs tasks."""
 
     def has_room(self) -> bool:
@@ -73,7 +73,7 @@ class Crew(Protocol):
         """Waits some seconds at most and returns what has happened, possibly nothing."""
 
     def close(self) -> None:
-        """Lets idle workers go; the crew takes no more tasks."""
+        """Lets idle workers go; the pool takes no more tasks."""
 
     def kill(self) -> None:
         """Ends everything at once."""
@@ -82,7 +82,7 @@ class Crew(Protocol):
 class _Worker:
     """A worker process and what is known about it."""
 
-    def __init__(self, limits: CrewLimits) -> None:
+    def __init__(self, limits: WorkerLimits) -> None:
         context = multiprocessing.get_context("spawn")
         self.pipe, tasks = context.Pipe()
         self.stderr, stderr = context.Pipe(duplex=False)
@@ -157,7 +157,7 @@ class _Worker:
         )
 
 
-class WorkerCrew:
+class WorkerPool:
     """Worker processes on this machine, each with a limit of time and memory.
 
     Args:
@@ -165,7 +165,7 @@ class WorkerCrew:
         limits: for each job.
     """
 
-    def __init__(self, count: int, limits: CrewLimits) -> None:
+    def __init__(self, count: int, limits: WorkerLimits) -> None:
         self._count = count
         self._limits = limits
         self._idle: list[_Worker] = []

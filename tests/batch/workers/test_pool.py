@@ -15,13 +15,13 @@ from tests.batch.conftest import Bench
 from tests.batch.stand_ins import KINDS, PHASES, talkative_job, worker_id_job
 from wrinkle_cad.batch.folder.events import FileFinished, FilePhase
 from wrinkle_cad.batch.folder.manifest import Record
-from wrinkle_cad.batch.workers.crew import WorkerCrew
-from wrinkle_cad.batch.workers.ending import CrewLimits
+from wrinkle_cad.batch.workers.ending import WorkerLimits
+from wrinkle_cad.batch.workers.pool import WorkerPool
 from wrinkle_cad.batch.workers.task import Task
 from wrinkle_cad.errors import InputError
 from wrinkle_cad.job.job import Job
 
-LIMITS = CrewLimits(timeout_s=4.0, memory_gib=2.0)
+LIMITS = WorkerLimits(timeout_s=4.0, memory_gib=2.0)
 
 
 def run(bench: Bench, **contents: str) -> dict[str, Record]:
@@ -143,30 +143,30 @@ def test_a_worker_that_dies_idle_costs_nothing(tmp_path: Path) -> None:
     source = tmp_path / "a.step"
     source.write_text("good")
     task = Task(job=Job(input=source, output_dir=tmp_path), job_function=worker_id_job)
-    crew = WorkerCrew(1, LIMITS)
+    pool = WorkerPool(1, LIMITS)
     try:
         pids = []
         for key in range(3):
-            crew.give(key, task)
+            pool.give(key, task)
             events = []
             while not events:
-                events = list(crew.wait(1.0))
+                events = list(pool.wait(1.0))
             pids.append(json.loads((tmp_path / "a.json").read_text())["pid"])
             os.kill(pids[-1], signal.SIGKILL)
             time.sleep(0.05)
         assert len(set(pids)) == 3
     finally:
-        crew.kill()
+        pool.kill()
 
 
 def test_closing_lets_idle_workers_go(tmp_path: Path) -> None:
     source = tmp_path / "a.step"
     source.write_text("good")
-    crew = WorkerCrew(1, LIMITS)
-    crew.give(0, Task(job=Job(input=source, output_dir=tmp_path), job_function=worker_id_job))
-    while crew.is_busy():
-        crew.wait(1.0)
-    crew.close()
+    pool = WorkerPool(1, LIMITS)
+    pool.give(0, Task(job=Job(input=source, output_dir=tmp_path), job_function=worker_id_job))
+    while pool.is_busy():
+        pool.wait(1.0)
+    pool.close()
     assert_no_workers()
 
 
@@ -178,4 +178,4 @@ def test_limits_out_of_range_are_refused(
     timeout_s: float, memory_gib: float, complaint: str
 ) -> None:
     with pytest.raises(InputError, match=complaint):
-        CrewLimits(timeout_s=timeout_s, memory_gib=memory_gib)
+        WorkerLimits(timeout_s=timeout_s, memory_gib=memory_gib)

@@ -1,4 +1,4 @@
-"""A caller's own executor as a crew: no limits, since they could not be kept."""
+"""A caller's own executor as a pool: no limits, since they could not be kept."""
 
 from __future__ import annotations
 
@@ -17,11 +17,11 @@ from wrinkle_cad.files.names import printable
 from wrinkle_cad.job.job import Job
 from wrinkle_cad.job.outcome import JobFailed
 
-from .crew import Event, Finished
+from .pool import Event, Finished
 from .task import Task, TaskResult, run_task
 
 
-class ExecutorCrew:
+class ExecutorPool:
     """Runs tasks on any `concurrent.futures.Executor`, which stays the caller's.
 
     Args:
