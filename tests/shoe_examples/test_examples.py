@@ -18,15 +18,18 @@ from tests.cad.measuring import bounding_box
 from tests.cad.stitch_checks import freecad_report, reread, shell_faults
 from wrinkle_cad.cad.exchange.read import read_cad
 from wrinkle_cad.cad.exchange.write import write_step
-from wrinkle_cad.cad.kernel.measures import is_valid
-from wrinkle_cad.cad.kernel.topology import free_edges
+from wrinkle_cad.cad.kernel.measures import face_areas, is_valid
+from wrinkle_cad.cad.kernel.topology import faces_of, free_edges
 from wrinkle_cad.job.job import make_job
 from wrinkle_cad.job.outcome import JobDone
 from wrinkle_cad.job.workflow import run_job
+from wrinkle_cad.pattern.check.judging import judge_dxf
 
 FOLDER = Path(__file__).parents[2] / "shoe_examples"
 OUTPUTS = {".step", ".stl", ".dxf", ".json", ".html"}
 EXAMPLES = ("one_wrinkle", "three_wrinkles", "across_seam", "feather_to_feather")
+RUN = [*EXAMPLES, pytest.param("cuff", marks=pytest.mark.slow)]
+"""A ring around the ankle takes longer; smaller rings are tried by default elsewhere."""
 
 
 @pytest.fixture(scope="module")
@@ -64,7 +67,7 @@ def test_the_instep_girth_is_that_of_size_42() -> None:
     assert girth == pytest.approx(250.0, abs=12.0)
 
 
-@pytest.mark.parametrize("name", EXAMPLES)
+@pytest.mark.parametrize("name", RUN)
 def test_an_example_runs_and_its_shell_is_sound(
     name: str, folder_of: Callable[[str], Path]
 ) -> None:
@@ -105,7 +108,7 @@ def test_freecad_reads_every_example(
     assert freecad_report(freecadcmd, paths, tmp_path) == expected
 
 
-@pytest.mark.parametrize("name", EXAMPLES)
+@pytest.mark.parametrize("name", [*EXAMPLES, "cuff", "square_to_round"])
 def test_the_committed_input_is_what_its_script_builds(name: str, tmp_path: Path) -> None:
     built = tmp_path / f"{name}.step"
     kept = (FOLDER / name / built.name).read_bytes()
@@ -115,7 +118,7 @@ def test_the_committed_input_is_what_its_script_builds(name: str, tmp_path: Path
     ]
 
 
-@pytest.mark.parametrize("name", EXAMPLES)
+@pytest.mark.parametrize("name", [*EXAMPLES, "cuff"])
 def test_the_picture_shows_the_upper_from_two_views(name: str) -> None:
     picture = image.imread(FOLDER / name / "picture.png")[..., :3]
     is_drawn = picture.min(axis=2) < 0.9
@@ -125,3 +128,21 @@ def test_the_picture_shows_the_upper_from_two_views(name: str) -> None:
     assert is_drawn[:, :2].mean() == is_drawn[:, -2:].mean() == 0.0
     # Shaded, not flat: many tones.
     assert len(np.unique((picture[is_drawn] * 40).astype(int), axis=0)) > 50
+
+
+def test_the_cuff_that_is_kept_is_watertight() -> None:
+    folder = FOLDER / "cuff"
+    (upper,) = read_cad(folder / "cuff.step").surfaces()
+    shell = reread(folder / "stitched.step")
+    assert shell_faults(shell, len(faces_of(shell)), upper.shape) == []
+    assert judge_dxf(folder / "pattern.dxf").is_clean
+
+
+def test_the_duct_that_is_kept_has_four_planes_and_four_cones() -> None:
+    folder = FOLDER / "square_to_round"
+    shell = reread(folder / "duct.step")
+    assert len(faces_of(shell)) == 8
+    assert sum(face_areas(faces_of(shell), relative_error=1e-8)) == pytest.approx(
+        89_811.953498, rel=1e-5
+    )
+    assert judge_dxf(folder / "duct.dxf").is_clean

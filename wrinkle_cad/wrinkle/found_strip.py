@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from wrinkle_cad import settings
 from wrinkle_cad.cad.rail.apart import check_apart
+from wrinkle_cad.cad.rail.closed_cut import Cut, FoundStrip, cut_open, without_end
 from wrinkle_cad.cad.rail.closed_starts import are_closed, started_alike
 from wrinkle_cad.cad.rail.directrix import Directrix
 from wrinkle_cad.cad.rail.joint_samples import mended_between, sampled_alone, sampled_jointly
@@ -22,7 +23,6 @@ from wrinkle_cad.strip.partners import Pair, Search
 from wrinkle_cad.strip.triangulation import Triangulation, triangulate
 from wrinkle_cad.strip.ways import checked_give_up
 
-from .closed_cut import Cut, FoundStrip, cut_open, without_end
 from .options import StripSettings
 from .ruling_control import RulingControl, control_of
 

@@ -20,11 +20,12 @@ from OCP.TopoDS import TopoDS_Edge, TopoDS_Shell
 from wrinkle_cad import settings
 from wrinkle_cad.cad.faces.shell import build_shell
 from wrinkle_cad.cad.kernel.curves import edge_ends
+from wrinkle_cad.cad.rail.closed_cut import cut_open, without_end
 from wrinkle_cad.cad.rail.directrix import Directrix, make_directrix, sample_directrix
 from wrinkle_cad.cad.rail.joint_samples import samples_against, search_between
 from wrinkle_cad.errors import InputError
 from wrinkle_cad.strip.curve.nearest import nearest_on_polyline
-from wrinkle_cad.strip.curve.polyline import segment_lengths
+from wrinkle_cad.strip.curve.polyline import row_lengths, segment_lengths
 from wrinkle_cad.strip.curve.sampling import Samples
 from wrinkle_cad.strip.portable import norm
 from wrinkle_cad.strip.sampled_strip import SampledStrip
@@ -122,20 +123,57 @@ def make_band(
         return None
     _check_open(profile, side, width, name)
     # The profile's samples are the wrinkle's too: only the side is sampled with regard to them.
-    alone = sample_directrix(side, tolerance)
-    side_samples = samples_against(side, alone, samples.points, tolerance)
-    rails = (profile, side) if i else (side, profile)
-    sampled = (samples, side_samples) if i else (side_samples, samples)
-    search = partial(
-        triangulate,
-        planarity=settings.planarity_from(tolerance),
-        price=settings.PRICE if price is None else price,
+    rails, sampled, triangulation = _searched(
+        i, profile, samples, side, tolerance, settings.PRICE if price is None else price
     )
-    free = (None, side) if i else (side, None)
-    triangulation, sampled = search_between(free, sampled, tolerance, search)
     _check_folds(triangulation, opening, i, width)
     shell = build_shell(triangulation, *rails, *sampled, settings.SURFACE)
     return Band(name, *rails, *sampled, triangulation, shell, width)
+
+
+def _searched(
+    i: int,
+    profile: Directrix,
+    samples: Samples,
+    side: Directrix,
+    tolerance: float,
+    price: float,
+) -> tuple[tuple[Directrix, Directrix], tuple[Samples, Samples], Triangulation]:
+    """The best strip between a profile, which keeps its samples, and a side of an opening."""
+    side_samples = samples_against(
+        side, sample_directrix(side, tolerance), samples.points, tolerance
+    )
+    rails = (profile, side) if i else (side, profile)
+    sampled = (samples, side_samples) if i else (side_samples, samples)
+    search = partial(triangulate, planarity=settings.planarity_from(tolerance), price=price)
+    if profile.is_closed:
+        around = search(without_end(sampled[0]), without_end(sampled[1]), closed=True)
+        # Cut where the wrinkle is: the profile then begins where it does, and so do its notches.
+        starts = around.bridges[:-1] % (len(around.p), len(around.q))
+        own = starts[starts[:, 1 - i] == 0]
+        apart = row_lengths(around.p[own[:, 0]] - around.q[own[:, 1]])
+        at_p, at_q = own[int(apart.argmin())].tolist()
+        found = cut_open(around, rails, sampled, (at_p, at_q))
+        return found.rails, found.samples, found.triangulation
+    free = (None, side) if i else (side, None)
+    triangulation, sampled = search_between(free, sampled, tolerance, search)
+    return rails, sampled, triangulation
+
+
+def check_beside(samples: Samples, edges: Sequence[TopoDS_Edge], name: str) -> None:
+    """Checks that a closed profile belongs to the side of a ring-shaped opening.
+
+    Raises:
+        InputError: it is too far from it.
+    """
+    side = side_curve(edges, f"opening along {name}")
+    gap = float(distances_from(samples.points, side).min())
+    if gap > settings.RAIL_OFF_UPPER or not side.is_closed:
+        raise InputError(
+            f"Profile {name} is closed and at least {gap:.3g} mm from its side of the opening: at"
+            f" most {settings.RAIL_OFF_UPPER:.3g} mm is allowed, and the opening must be a ring."
+            " Pass the profiles of this opening."
+        )
 
 
 def distances_from(points: Floats, side: Directrix) -> Floats:

@@ -14,6 +14,7 @@ from wrinkle_cad.cad.kernel.curves import edge_middle
 from wrinkle_cad.cad.kernel.measures import face_areas, length_of
 from wrinkle_cad.cad.kernel.shape_index import ShapeIndex
 from wrinkle_cad.cad.kernel.topology import faces_of, free_edges, make_compound, unwrap
+from wrinkle_cad.cad.rail.closed_starts import are_closed
 from wrinkle_cad.cad.rail.directrix import Directrix, make_directrix, orient_alike
 from wrinkle_cad.errors import CadError, InputError
 
@@ -46,6 +47,8 @@ def carve(
 
     Rails that do not lie on the upper are projected onto it. Where both rails end on the upper's
     border, so does the opening; elsewhere it ends along the projection of the straight end bridge.
+    Closed rails make an opening like a ring, which may go all around the upper: the strip alone
+    joins its parts again.
 
     Args:
         upper: a face, shell, solid or compound of faces; sewn or not. It is not written to.
@@ -155,10 +158,11 @@ def carve_request(
     """Returns what ``carve_shapes`` takes for one strip, its rails turned alike.
 
     Raises:
-        InputError: what is no rail; values out of range.
+        InputError: what is no rail; one closed and one open rail; values out of range.
     """
     _check_numbers(0.0 if margin is None else margin, fade, limit, join)
     first, second, _ = orient_alike(make_directrix(p, name="P"), make_directrix(q, name="Q"))
+    are_closed(first, second)
     return CarveRequest(first, second, margin, fade, limit, join, allow_split, tolerance, name)
 
 
@@ -187,7 +191,8 @@ def carve_shapes(
     body, removed, origin = _divided(split, plans)
     for plan, cut in zip(plans, removed, strict=True):
         _check_removed(cut, plan.rails)
-    allowed = all(request.allow_split for request in requests)
+    # A ring has an inside and an outside: the strip joins them again.
+    allowed = all(plan.request.allow_split or plan.rails[0].is_ring for plan in plans)
     count = _check_whole(faces, body, allowed)
     body_shape = joined_faces(body)
     whole, kept, cut_areas = _checked_areas(faces.faces, split, len(plans))

@@ -25,6 +25,7 @@ from wrinkle_cad.strip.curve.cubic import cubic_through
 from wrinkle_cad.strip.curve.polyline import arc_lengths
 
 from .opening_outline import Side
+from .smooth import is_ring
 
 Floats = NDArray[np.float64]
 
@@ -33,6 +34,9 @@ DRAWN_EDGE_GAP: Final = 2e-6
 
 DRAWN_EDGE_HALVINGS: Final = 12
 """How often a stretch of a side is halved, at most, until its curve in space is exact enough."""
+
+CLOSED: Final = 1e-6
+"""Ends of a ring closer than this share of its extent in parameters are one place."""
 
 BETWEEN: Final = np.array([0.25, 0.5, 0.75])
 
@@ -101,6 +105,9 @@ def _parameters(surface: ShapeAnalysis_Surface, points: Floats) -> Floats | None
             return None
         found.append((at.X(), at.Y()))
     uv = np.array(found)
+    if is_ring(points) and np.abs(uv[-1] - uv[0]).max() > CLOSED * np.ptp(uv, axis=0).max():
+        # It goes around the face, and starts and ends on either side of the seam.
+        return None
     moves = np.abs(np.diff(uv, axis=0)).max(axis=0)
     # Along a smooth line the largest step is no multiple of the whole way.
     return None if (moves > 0.25 * np.abs(np.diff(uv, axis=0)).sum(axis=0) + 1e-9).any() else uv

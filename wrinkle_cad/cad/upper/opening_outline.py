@@ -3,12 +3,13 @@
 A side follows its rail, moved outward (away from the other rail) by the margin. The margin fades
 to nothing at both ends of the rails, so that sides and rails meet there: the opening is a lens
 around the strip. An end is the nearest curve on the upper to the straight end bridge, or nothing
-where the rails meet in a point or end on the upper's own border.
+where the rails meet in a point or end on the upper's own border. Closed rails have no ends: the
+opening is a ring, its margin the same all around.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Final
 
 import numpy as np
@@ -26,6 +27,7 @@ from wrinkle_cad.strip.curve.polyline import (
 from wrinkle_cad.strip.portable import dot, norm, sin
 
 from .projection import Feet, UpperFaces
+from .smooth import is_ring
 
 Floats = NDArray[np.float64]
 
@@ -51,6 +53,11 @@ class Side:
     faces: NDArray[np.int64]
     """(k,) index of the face that each point lies on."""
 
+    @property
+    def is_ring(self) -> bool:
+        """Whether its last point is its first one again."""
+        return is_ring(self.points)
+
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Rail:
@@ -70,6 +77,11 @@ class Rail:
         """(k, 3) mm."""
         return self.feet.points
 
+    @property
+    def is_ring(self) -> bool:
+        """Whether its last point is its first one again."""
+        return is_ring(self.points)
+
 
 def rail_on(upper: UpperFaces, directrix: Directrix, name: str) -> Rail:
     """Returns a directrix as it lies on the upper, at points even in its arc length.
@@ -80,6 +92,8 @@ def rail_on(upper: UpperFaces, directrix: Directrix, name: str) -> Rail:
     parameters = _even_parameters(directrix, settings.RAIL_POINTS)
     given = directrix.point_at(parameters)
     feet = upper.feet(given)
+    if directrix.is_closed:
+        feet = _closed_up(feet)
     own = polyline_length(given)
     steps = segment_lengths(feet.points)
     length = polyline_length(feet.points)
@@ -94,9 +108,23 @@ def rail_on(upper: UpperFaces, directrix: Directrix, name: str) -> Rail:
             f"Rail {name} stands upright on the upper at {at:.4g} mm of its {own:.4g} mm: its feet"
             " are one point there. Draw it along the upper."
         )
-    return Rail(
-        arc_lengths(feet.points) / length, feet, unit(np.gradient(feet.points, axis=0)), length
-    )
+    return Rail(arc_lengths(feet.points) / length, feet, _tangents(feet.points), length)
+
+
+def _closed_up(feet: Feet) -> Feet:
+    """The feet of a ring, the last one the first again to the last digit."""
+    points, normals = feet.points.copy(), feet.normals.copy()
+    points[-1], normals[-1] = points[0], normals[0]
+    return replace(feet, points=points, normals=normals)
+
+
+def _tangents(points: Floats) -> Floats:
+    """(k, 3) unit tangents of a row of points, or of a ring of them."""
+    if not is_ring(points):
+        return unit(np.gradient(points, axis=0))
+    before, after = np.roll(points[:-1], 1, axis=0), np.roll(points[:-1], -1, axis=0)
+    tangents = unit(after - before)
+    return np.concatenate((tangents, tangents[:1]))
 
 
 def _even_parameters(directrix: Directrix, count: int) -> Floats:
@@ -144,6 +172,13 @@ def _sign_changes(offset: Floats, nothing: float) -> int:
     return int((signs[1:] != signs[:-1]).sum())
 
 
+def margin_along(rail: Rail, margin: float, fade: float) -> Floats:
+    """Returns (k,) mm: the margin beside the points of a rail, faded at its ends if it has any."""
+    if rail.is_ring:
+        return np.full(len(rail.points), margin)
+    return faded_margin(rail.shares, margin, fade)
+
+
 def faded_margin(shares: Floats, margin: float, fade: float) -> Floats:
     """Returns (k,) mm: the margin at (k,) shares of the arc length, 0 at both ends.
 
@@ -159,9 +194,12 @@ def side_of(upper: UpperFaces, rail: Rail, toward: Floats, margin: Floats, name:
     if not (margin > 0.0).any():
         return Side(name, rail.points, rail.feet.normals, toward, rail.feet.faces)
     feet = upper.feet(rail.points - margin[:, None] * toward)
+    if rail.is_ring:
+        feet = _closed_up(feet)
     points, normals = feet.points.copy(), feet.normals.copy()
-    points[[0, -1]], normals[[0, -1]] = rail.points[[0, -1]], rail.feet.normals[[0, -1]]
-    tangents = unit(np.gradient(points, axis=0))
+    if not rail.is_ring:
+        points[[0, -1]], normals[[0, -1]] = rail.points[[0, -1]], rail.feet.normals[[0, -1]]
+    tangents = _tangents(points)
     inward = unit(np.cross(normals, tangents))
     inward *= np.sign((inward * toward).sum(axis=1))[:, None]
     return Side(name, points, normals, inward, feet.faces)

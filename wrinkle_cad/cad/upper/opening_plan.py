@@ -15,7 +15,7 @@ from wrinkle_cad.errors import InputError
 from wrinkle_cad.strip.curve.polyline import polyline_length
 
 from .opening import CarveRequest
-from .opening_outline import Rail, Side, across_rail, end_between, faded_margin, rail_on, side_of
+from .opening_outline import Rail, Side, across_rail, end_between, margin_along, rail_on, side_of
 from .projection import UpperFaces
 
 Floats = NDArray[np.float64]
@@ -86,9 +86,11 @@ def _sides(
     on_border: tuple[bool, bool],
 ) -> list[Side]:
     sides = [
-        side_of(faces, rail, toward, faded_margin(rail.shares, margin, fade), name)
+        side_of(faces, rail, toward, margin_along(rail, margin, fade), name)
         for rail, toward, name in zip(rails, across, "pq", strict=True)
     ]
+    if sides[0].is_ring:
+        return sides
     for at, name in ((0, "start"), (-1, "end")):
         end = None if on_border[at] else end_between(faces, sides[0], sides[1], at, name)
         if end is not None:
@@ -123,7 +125,7 @@ def _check_near(rail: Rail, name: str, limit: float) -> None:
 
 def _ends_on_border(shape: TopoDS_Shape, rails: tuple[Rail, Rail]) -> tuple[bool, bool]:
     border = free_edges(shape)
-    if not border:
+    if not border or rails[0].is_ring:
         return False, False
     held = make_compound(border)
     reach = [settings.BORDER_REACH_PER_LENGTH * rail.length for rail in rails]

@@ -117,6 +117,8 @@ def profile_curves(
             + outward[:, None] * rail.feet.normals
             + sideways[:, None] * opening.across[i]
         )
+        if rail.is_ring:
+            points[-1] = points[0]
         made.append(make_directrix(smooth_edge(points), name=name))
     return made[0], made[1]
 
@@ -136,10 +138,17 @@ def _wave_shape(
         )
     if not np.isfinite(phase):
         raise InputError(f"phase_deg is {math.degrees(phase):g} on {name}. Give a finite angle.")
+    if rail.is_ring and waves != round(waves):
+        raise InputError(
+            f"waves is {waves:g} on {name}, which is closed: a whole number of waves is needed"
+            " there."
+        )
     angle = 2.0 * np.pi * waves * rail.shares + phase
     near = np.minimum(rail.shares, 1.0 - rail.shares)
     # A squared sine: at the ends it grows slower than the margin, so the band does not stand up.
     envelope = sin(0.5 * np.pi * np.clip(near / fade, 0.0, 1.0)) ** 2
+    if rail.is_ring:
+        envelope = np.ones(len(near))
     if side == "both":
         return np.asarray(envelope * sin(angle))
     sign = 1.0 if side == "out" else -1.0

@@ -10,30 +10,20 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 from OCP.BRepAlgoAPI import BRepAlgoAPI_Splitter
-from OCP.BRepBuilderAPI import BRepBuilderAPI_MakeFace
 from OCP.TopoDS import TopoDS_Edge, TopoDS_Face, TopoDS_Shape
 
-from wrinkle_cad import settings
 from wrinkle_cad.cad.kernel.shape_index import ShapeIndex
-from wrinkle_cad.cad.kernel.splines import make_surface
 from wrinkle_cad.cad.kernel.steps import kernel_step
 from wrinkle_cad.cad.kernel.topology import as_face
 from wrinkle_cad.cad.kernel.versions import shape_list
 from wrinkle_cad.errors import CadError
-from wrinkle_cad.strip.curve.cubic import cubic_through
-from wrinkle_cad.strip.curve.polyline import arc_lengths
-from wrinkle_cad.strip.portable import norm
 
 from .drawn_edges import drawn_edges
-from .opening_outline import Side, unit
 from .opening_plan import OpeningPlan
 from .pieces import Split, sorted_pieces
 from .projection import UpperFaces
-
-Floats = NDArray[np.float64]
-
+from .ribbons import ribbon
 
 STEP = "split the upper"
 
@@ -57,7 +47,7 @@ def split_faces(faces: UpperFaces, plans: Sequence[OpeningPlan]) -> Split:
             edges = _drawn(faces.faces, plan)
             drawn += edges or ()
             tools += edges or [
-                _ribbon(side, plan.height, over)
+                ribbon(side, plan.height, over, faces.faces)
                 for side, over in zip(plan.sides, plan.overrun, strict=True)
             ]
             points = np.vstack([side.points for side in plan.sides])
@@ -94,31 +84,3 @@ def _pieces_of(splitter: BRepAlgoAPI_Splitter, face: TopoDS_Face) -> tuple[TopoD
         return ()
     pieces = tuple(as_face(piece.Oriented(face.Orientation())) for piece in splitter.Modified(face))
     return pieces or (face,)
-
-
-def _ribbon(side: Side, height: float, overrun: tuple[float, float]) -> TopoDS_Face:
-    points, normals = side.points, side.normals
-    for first, extra in ((True, overrun[0]), (False, overrun[1])):
-        if extra > 0.0:
-            points, normals = _extended(points, normals, first, extra)
-    arc = arc_lengths(points)
-    rows = np.stack((points - height * normals, points + height * normals), axis=1)
-    spline = cubic_through(arc, rows.reshape(len(rows), 6))
-    knots, counts = np.unique(spline.knots, return_counts=True)
-    surface = make_surface(
-        spline.poles.reshape(-1, 2, 3), (knots, (0.0, 2.0 * height)), (counts, (2, 2)), (3, 1)
-    )
-    return BRepBuilderAPI_MakeFace(surface, settings.CONFUSION).Face()
-
-
-def _extended(points: Floats, normals: Floats, first: bool, extra: float) -> tuple[Floats, Floats]:
-    """Runs a side on beyond one end, straight, in steps as long as its own."""
-    sense = 1 if first else -1
-    run, turn = points[::sense], normals[::sense]
-    step = norm(run[1] - run[0])
-    direction = unit((run[0] - run[2])[None])[0]
-    count = max(2, int(np.ceil(extra / step)))
-    beyond = run[0] + np.arange(count, 0, -1)[:, None] * (extra / count) * direction
-    grown = np.vstack((beyond, run))
-    turned = np.vstack((np.repeat(turn[:1], count, axis=0), turn))
-    return grown[::sense], turned[::sense]

@@ -19,7 +19,7 @@ from wrinkle_cad.cad.rail.directrix import Directrix
 from wrinkle_cad.errors import CadError, InputError
 from wrinkle_cad.strip.portable import norm
 
-from .bands import Band, StripLike, make_band
+from .bands import Band, StripLike, check_beside, make_band
 from .border_check import compared_border
 from .carve import carve_shapes
 from .end_fans import end_fan
@@ -182,13 +182,17 @@ def _all_faces(
                 (opening.q_edges, strip.q, strip.q_samples),
             )
         ):
-            ends.append(_side_ends(edges, profile, "PQ"[i]))
+            if profile.is_closed:
+                check_beside(samples, edges, "PQ"[i])
+            else:
+                ends.append(_side_ends(edges, profile, "PQ"[i]))
             band = make_band(opening, i, profile, samples, tolerance=tolerance, price=price)
             if band is not None:
                 part = f"{name} band {band.name}"
                 bands.append(replace(band, name=part))
                 pieces.append((part, faces_of(band.shell)))
-        for at, edges in ((0, opening.start_edges), (1, opening.end_edges)):
+        both_ends = ((0, opening.start_edges), (1, opening.end_edges)) if len(ends) == 2 else ()
+        for at, edges in both_ends:
             bridge = np.array([strip.p_samples.points[-at], strip.q_samples.points[-at]])
             corners = np.array([ends[0][at], ends[1][at]])
             pieces.append((f"{name} end {at + 1}", end_fan(edges, bridge, corners)))

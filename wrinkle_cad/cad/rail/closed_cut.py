@@ -14,14 +14,15 @@ import numpy as np
 import shapely
 from numpy.typing import NDArray
 
-from wrinkle_cad.cad.rail.closed_starts import started_at
-from wrinkle_cad.cad.rail.directrix import Directrix
 from wrinkle_cad.strip.curve.polyline import row_lengths
 from wrinkle_cad.strip.curve.sampling import Samples
 from wrinkle_cad.strip.cut_open import cut_at
 from wrinkle_cad.strip.flat.overlap import is_overlapping
 from wrinkle_cad.strip.flat.unrolling import unroll
 from wrinkle_cad.strip.triangulation import Triangulation
+
+from .closed_starts import started_at
+from .directrix import Directrix
 
 Floats = NDArray[np.float64]
 Cut = Literal["shortest", "best"] | tuple[int, int]
@@ -113,7 +114,9 @@ def _is_inside_fan(closed: Triangulation) -> NDArray[np.bool_]:
 
 
 def _started(rail: Directrix, samples: Samples, cut: int) -> tuple[Directrix, Samples]:
-    """A rail and its samples, both started at one of these."""
+    """A rail and its samples, both started at one of these; the same if that is the first."""
+    if cut == 0:
+        return rail, samples
     first, last = rail.interval
     at = float(samples.parameters[cut])
     points = np.roll(samples.points[:-1], -cut, axis=0)
