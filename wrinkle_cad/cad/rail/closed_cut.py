@@ -115,7 +115,7 @@ def _is_inside_fan(closed: Triangulation) -> NDArray[np.bool_]:
 
 def _started(rail: Directrix, samples: Samples, cut: int) -> tuple[Directrix, Samples]:
     """A rail and its samples, both started at one of these; the same if that is the first."""
-    if cut == 0:
+    if cut == 0 and (samples.points[0] == samples.points[-1]).all():
         return rail, samples
     first, last = rail.interval
     at = float(samples.parameters[cut])
