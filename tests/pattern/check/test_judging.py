@@ -479,3 +479,18 @@ def test_letters_inside_a_word_make_none(layer, tmp_path):
     document = drawing()
     document.modelspace().add_lwpolyline(((300, 0), (350, 9)), dxfattribs={"layer": layer})
     assert judged(document, tmp_path).cut_layers == ("CUT",)
+
+
+@pytest.mark.parametrize("bulge", [1e-6, 2.18581666e-04, 1e-3, 0.3])
+def test_flat_arcs_have_no_segment_without_length_and_repeated_vertices_have(bulge, tmp_path):
+    """The second of these begins, taken apart by ezdxf, with two points 5e-12 mm apart."""
+    document = ezdxf.new(units=4)
+    rows = [(11.847211, 56.737098, 0.0), (0.0, 33.59142, bulge), (27.793207, 19.272829, 0.0)]
+    document.modelspace().add_lwpolyline(rows, "xyb", close=True, dxfattribs={"layer": "CUT"})
+    document.layers.add("CUT")
+    assert judged(document, tmp_path).is_clean
+    again = ezdxf.new(units=4)
+    again.layers.add("CUT")
+    twice = [rows[0], (0.0, 33.59142, 0.0), *rows[1:]]
+    again.modelspace().add_lwpolyline(twice, "xyb", close=True, dxfattribs={"layer": "CUT"})
+    assert "zero-length" in codes(judged(again, tmp_path))

@@ -62,6 +62,11 @@ class FileLine:
     stated: Floats
     """(s, 2) the vertices that the file states; none for arcs and splines."""
 
+    @property
+    def corners(self) -> Floats:
+        """(k, 2) the vertices whose distances the file decides: as stated, where it states any."""
+        return self.stated if self.is_curved and len(self.stated) else self.points
+
 
 @dataclass(frozen=True, slots=True, eq=False)
 class FileMark:
@@ -184,8 +189,10 @@ def _along(entity: DXFEntity, stated: Floats) -> Floats:
     path = make_path(entity)
     size = max((path.start.distance(point) for point in path.control_vertices()), default=0.0)
     sagitta = max(_SAGITTA, _SAGITTA_PER_SIZE * size)
-    points = np.array([tuple(point) for point in path.flattening(sagitta)])
-    return points.reshape(-1, 3)
+    points = np.array([tuple(point) for point in path.flattening(sagitta)]).reshape(-1, 3)
+    # Taken apart, an arc of a large radius may begin with its first point twice, to round-off.
+    step = np.abs(np.diff(points, axis=0)).max(axis=1)
+    return points[np.append(True, step > limits.ZERO)] if len(points) > 1 else points
 
 
 def _along_spline(entity: DXFEntity) -> Floats:

@@ -156,18 +156,18 @@ def _texts(content: DxfContent) -> Iterator[Finding]:
 
 def _lines(content: DxfContent) -> Iterator[Finding]:
     for line in _with_short_segments(content.lines):
-        first = line.points[: int(line.is_closed)]
-        lengths = segment_lengths(np.vstack((line.points, first)))
+        points = line.corners
+        lengths = segment_lengths(np.vstack((points, points[: int(line.is_closed)])))
         short = np.flatnonzero(lengths < limits.ZERO)
-        if len(short) or len(line.points) < 2:
+        if len(short) or len(points) < 2:
             yield _finding(
                 "zero-length",
                 "error",
                 f"{line.kind} on layer {line.layer} has a segment without length at "
-                f"{_place(line.points[short[0] if len(short) else 0])}. Remove the repeat.",
+                f"{_place(points[short[0] if len(short) else 0])}. Remove the repeat.",
             )
         elif not line.is_curved and len(lengths) and lengths.min() < limits.SHORTEST:
-            at = line.points[int(np.argmin(lengths))]
+            at = points[int(np.argmin(lengths))]
             yield _finding(
                 "micro-segment",
                 "warning",
@@ -188,9 +188,9 @@ def _with_short_segments(lines: Sequence[FileLine]) -> Iterator[FileLine]:
     """Yields the lines without any segment, or with one that is short: of most, none is."""
     if not lines:
         return
-    counts = np.array([len(line.points) for line in lines])
+    counts = np.array([len(line.corners) for line in lines])
     # Of a closed line the segment that closes it counts: each ends with its first point.
-    rings = (np.vstack((line.points, line.points[: int(line.is_closed)])) for line in lines)
+    rings = (np.vstack((line.corners, line.corners[: int(line.is_closed)])) for line in lines)
     closed = counts + [int(line.is_closed) for line in lines]
     points = np.vstack(list(rings))
     stops = np.cumsum(closed)
