@@ -215,6 +215,16 @@ def test_modules_have_a_size_that_one_purpose_needs() -> None:
     assert median(sizes) <= TYPICAL_MODULE
 
 
+def test_only_the_command_line_workers_and_dates_of_exports_look_at_the_environment() -> None:
+    looking = {
+        path.relative_to(PACKAGE).as_posix()
+        for path in MODULES
+        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8")))
+        if isinstance(node, ast.Attribute) and node.attr in ("environ", "getenv")
+    }
+    assert looking == {"cli/main.py", "batch/workers/worker.py", "wrinkle/cut_pattern.py"}
+
+
 def test_the_package_and_its_help_load_nothing_heavy() -> None:
     code = (
         "import sys, wrinkle_cad, wrinkle_cad.cli.main as cli\n"

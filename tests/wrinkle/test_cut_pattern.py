@@ -10,6 +10,7 @@ import pytest
 from wrinkle_cad import Pattern, PieceSettings, WrinkleStrip
 from wrinkle_cad.cad.exchange.choose import choose_inputs
 from wrinkle_cad.cad.exchange.read import read_cad
+from wrinkle_cad.errors import InputError
 from wrinkle_cad.job.job import Job
 from wrinkle_cad.job.parts import limits_of, piece_settings_of
 from wrinkle_cad.job.wrinkled_upper import WrinkledUpper, wrinkle_upper
@@ -108,3 +109,7 @@ def test_an_export_carries_todays_date_unless_one_is_given(
     assert stated(datetime(2024, 2, 29, tzinfo=UTC)) == "29-02-2024"
     monkeypatch.setenv("SOURCE_DATE_EPOCH", "0")
     assert stated() == "01-01-1970"
+    for wrong in ("yesterday", "253402300800", "9" * 30):
+        monkeypatch.setenv("SOURCE_DATE_EPOCH", wrong)
+        with pytest.raises(InputError, match="SOURCE_DATE_EPOCH is"):
+            stated()

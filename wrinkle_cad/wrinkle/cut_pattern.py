@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Protocol
 
 from wrinkle_cad import settings
-from wrinkle_cad.errors import Finding
+from wrinkle_cad.errors import Finding, InputError
 from wrinkle_cad.pattern.piece.making import (
     StripParts,
     draft_pieces,
@@ -131,7 +131,7 @@ class Pattern:
             test_square: adds a square of 100 mm.
 
         Raises:
-            InputError: an unknown profile or version.
+            InputError: an unknown profile or version, or SOURCE_DATE_EPOCH is no time.
             ExportError: the file could not be written; what stood there before is untouched.
         """
         from wrinkle_cad.pattern.formats.dxf import write_dxf
@@ -223,9 +223,15 @@ def write_sheets(
 def _moment() -> datetime:
     """The time of reproducible builds where it is set, else now."""
     given = os.environ.get("SOURCE_DATE_EPOCH", "")
-    if given.isdecimal():
+    if not given:
+        return datetime.now(UTC).replace(microsecond=0)
+    try:
         return datetime.fromtimestamp(int(given), UTC)
-    return datetime.now(UTC).replace(microsecond=0)
+    except (ValueError, OverflowError, OSError) as error:
+        raise InputError(
+            f"SOURCE_DATE_EPOCH is {given[:40]!r} and must be whole seconds since 1970, before the "
+            "year 10000. Correct it, or give a timestamp."
+        ) from error
 
 
 def pattern_of_strips(
