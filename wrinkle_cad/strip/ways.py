@@ -69,8 +69,10 @@ def check_search(search: Search, criteria: tuple[Criterion, ...]) -> None:
     Raises:
         InputError: one sentence says which.
     """
-    if search not in ("global", "local"):
-        raise InputError(f"search cannot be {search!r}: choose one of global, local.")
+    if search not in get_args(Search):
+        raise InputError(
+            f"search cannot be {search!r}: choose one of {', '.join(get_args(Search))}."
+        )
     if search == "local" and criteria[0] not in ("invalid", "bending"):
         raise InputError(
             f"A local search cannot start with the criterion {criteria[0]}, only with invalid or"

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from wrinkle_cad import settings
-from wrinkle_cad.errors import CadError, Finding, InputError
+from wrinkle_cad.errors import CadError, Finding
 from wrinkle_cad.options.checking import check_known
 from wrinkle_cad.options.signature import takes_options_of
 from wrinkle_cad.pattern.piece.options import PatternArguments, PieceSettings
@@ -129,7 +129,6 @@ class TriangulatedStrip:
     def topods_shell(self, surface: settings.Surface | None = None) -> TopoDS_Shell:
         """The surface as the kernel's own shell, made once per kind and shared."""
         kind = self.surface if surface is None else surface
-        check_surface(kind)
         if kind not in self._shells:
             from wrinkle_cad.cad.faces.shell import build_shell
 
@@ -353,9 +352,3 @@ class TriangulatedStrip:
         from wrinkle_cad.cad.exchange.write import write_stl
 
         write_stl(Path(path), self.topods_shell(), tolerance=self.tolerance)
-
-
-def check_surface(surface: str) -> None:
-    """Raises an ``InputError`` unless the kind of surface is known."""
-    if surface not in settings.SURFACES:
-        raise InputError(f"surface cannot be {surface!r}: give {' or '.join(settings.SURFACES)}.")

@@ -383,7 +383,7 @@ def test_a_sliver_over_several_spans_is_cut_at_its_knots(tmp_path: Path) -> None
 
 
 def test_an_unknown_surface_is_refused() -> None:
-    with pytest.raises(InputError, match="surface cannot be 'prisms': choose one of cones, facets"):
+    with pytest.raises(InputError, match="surface cannot be 'prisms': give cones or facets"):
         cylinder_strip().shell("prisms")
 
 

@@ -38,8 +38,6 @@ from .slivers import cut_at_knots
 Floats = NDArray[np.float64]
 Bools = NDArray[np.bool_]
 
-KINDS = ("cones", "facets")
-
 
 def build_shell(
     triangulation: Triangulation,
@@ -63,8 +61,8 @@ def build_shell(
         InputError: an unknown kind, or samples that are not those of the triangulation.
         CadError: no face is left, or the shell is not valid.
     """
-    if kind not in KINDS:
-        raise InputError(f"surface cannot be {kind!r}: choose one of {', '.join(KINDS)}.")
+    if kind not in settings.SURFACES:
+        raise InputError(f"surface cannot be {kind!r}: give {' or '.join(settings.SURFACES)}.")
     _check_samples(triangulation, p_samples, q_samples)
     has_curves = kind == "cones"
     samples = p_samples, q_samples

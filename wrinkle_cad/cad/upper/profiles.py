@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, get_args
 
 import numpy as np
 from numpy.typing import NDArray
@@ -103,8 +103,8 @@ def profile_curves(
     """Returns the profiles of ``wrinkle_profiles`` as directrices."""
     if not settings.FADE_MIN <= fade <= 0.5:
         raise InputError(f"fade is {fade:g}: {settings.FADE_MIN:g} to 0.5 is allowed.")
-    if side not in ("out", "in", "both"):
-        raise InputError(f"side is {side!r}. Choose out, in or both.")
+    if side not in get_args(settings.WaveSide):
+        raise InputError(f"side is {side!r}. Choose {', '.join(get_args(settings.WaveSide))}.")
     made = []
     for i, (rail, name) in enumerate(zip(opening.rails, "PQ", strict=True)):
         shape = _wave_shape(
