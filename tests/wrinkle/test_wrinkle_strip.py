@@ -132,6 +132,10 @@ def test_facets_have_the_chords_lengths_and_cones_the_curves() -> None:
 
 def test_step_and_stl_are_written_from_a_script(strip: WrinkleStrip, tmp_path: Path) -> None:
     strip.export_step(tmp_path / "vamp.step")
+    strip.export_step(tmp_path / "managed.step", schema="AP242")
+    schemas = [(tmp_path / name).read_bytes()[:2000] for name in ("vamp.step", "managed.step")]
+    assert [b"AUTOMOTIVE_DESIGN" in schema for schema in schemas] == [True, False]
+    assert b"AP242_MANAGED_MODEL" in schemas[1]
     strip.export_stl(tmp_path / "vamp.stl")
     again = b3d.import_step(tmp_path / "vamp.step")
     assert again.area == pytest.approx(strip.report.area_3d_mm2, rel=1e-6)
