@@ -24,7 +24,7 @@ from wrinkle_cad.cad.kernel.shape_index import ShapeIndex
 from wrinkle_cad.cad.kernel.topology import as_edge
 from wrinkle_cad.errors import CadError, InputError
 from wrinkle_cad.strip.curve.nearest import nearest_on_polyline
-from wrinkle_cad.strip.portable import dot
+from wrinkle_cad.strip.portable import dot, norm
 
 from .opening_outline import Side, unit
 from .opening_plan import OpeningPlan
@@ -144,7 +144,7 @@ def _nested(plans: Sequence[OpeningPlan], first: int, second: int) -> InputError
 
 def _span(plan: OpeningPlan) -> float:
     points = np.vstack([side.points for side in plan.sides])
-    return float(np.linalg.norm(np.ptp(points, axis=0)))
+    return norm(np.ptp(points, axis=0))
 
 
 def _decide(votes: Sequence[Sequence[float]], joints: Sequence[Sequence[int]]) -> list[bool]:
