@@ -57,10 +57,12 @@ def test_an_area_that_misses_its_bound_is_an_error() -> None:
 
 def test_a_face_that_crosses_itself_is_not_valid() -> None:
     assert is_valid(BOX)
-    check_valid(BOX, "make a box")
+    check_valid(BOX, "make a box", "Turn it.")
     assert not is_valid(bow_tie())
-    with pytest.raises(CadError, match=r"make a bow tie.* the resulting face is not valid"):
-        check_valid(bow_tie(), "make a bow tie")
+    with pytest.raises(
+        CadError, match=r"^Cannot make a bow tie: .* a fault in 1 of its 1 faces\. Untie it\.$"
+    ):
+        check_valid(bow_tie(), "make a bow tie", "Untie it.")
 
 
 def test_the_largest_edge_tolerance_is_reported() -> None:

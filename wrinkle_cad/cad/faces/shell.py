@@ -86,7 +86,8 @@ def build_shell(
             f"every face is thinner than {skeleton.limit:.1e} mm. Sample the rails more finely.",
         )
     shell = _shell_of(faces)
-    check_valid(shell, "make the faces of a strip")
+    advice = "Sample the rails with a smaller tolerance, or move them apart."
+    check_valid(shell, "make the faces of a strip", advice)
     return shell
 
 

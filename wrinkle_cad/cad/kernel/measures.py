@@ -16,7 +16,7 @@ from wrinkle_cad import settings
 from wrinkle_cad.errors import CadError
 
 from .steps import kernel_step
-from .topology import edges_of, kind_name
+from .topology import edges_of, faces_of, kind_name
 
 
 def length_of(shape: TopoDS_Shape) -> float:
@@ -83,10 +83,22 @@ def is_valid(shape: TopoDS_Shape) -> bool:
         return bool(BRepCheck_Analyzer(shape, True).IsValid())
 
 
-def check_valid(shape: TopoDS_Shape, step: str) -> None:
-    """Raises a ``CadError`` for the step if the kernel's own check finds a fault in its result."""
+def check_valid(shape: TopoDS_Shape, step: str, advice: str) -> None:
+    """Raises a ``CadError`` for the step if the kernel's own check finds a fault in its result.
+
+    Args:
+        shape: the result.
+        step: what was being done.
+        advice: a sentence that says what to do about it.
+    """
     if not is_valid(shape):
-        raise CadError(step, f"the resulting {kind_name(shape)} is not valid. Change the input.")
+        faces = faces_of(shape)
+        faulty = sum(not is_valid(face) for face in faces)
+        raise CadError(
+            step,
+            f"the resulting {kind_name(shape)} does not pass the CAD kernel's own check, which"
+            f" finds a fault in {faulty} of its {len(faces)} faces. {advice}",
+        )
 
 
 def tolerance_of(shape: TopoDS_Shape) -> float:

@@ -232,7 +232,7 @@ def _stitched(
         sum(opening.lost_border for opening in chained),
         sum(_gaps_bridged(opening) for opening in chained),
     )
-    check_valid(sewn.shell, STEP)
+    check_valid(sewn.shell, STEP, "Change the margin, or move the rails a little.")
     report = StitchReport(
         face_count=len(sewn.faces),
         free_edges_before=border.before,
