@@ -26,6 +26,7 @@ from wrinkle_cad.strip.curve.polyline import (
 )
 from wrinkle_cad.strip.portable import dot, norm, sin
 
+from .plane_path import path_in_plane
 from .projection import Feet, UpperFaces
 from .smooth import is_ring
 
@@ -33,6 +34,9 @@ Floats = NDArray[np.float64]
 
 FEET_PER_LENGTH: Final = 1e-3
 """A rail whose feet on the upper span less than this share of its length stands on it upright."""
+
+JUMP: Final = 4.0
+"""Feet further apart than so many steps of the curve have jumped."""
 
 STANDING_PER_LENGTH: Final = 1e-8
 """Feet that follow each other within this share of their whole length are one point."""
@@ -208,7 +212,8 @@ def side_of(upper: UpperFaces, rail: Rail, toward: Floats, margin: Floats, name:
 def end_between(upper: UpperFaces, p: Side, q: Side, at: int, name: str) -> Side | None:
     """Returns the end of an outline from P to Q at index ``at`` (0 or -1) of both, if it has one.
 
-    It is the projection of the straight end bridge; None where the rails meet.
+    It is the projection of the straight end bridge, and where that jumps, over a sharp edge, the
+    way in the plane of bridge and normals; None where the rails meet.
     """
     bridge = np.array([p.points[at], q.points[at]])
     width = norm(bridge[1] - bridge[0])
@@ -217,6 +222,8 @@ def end_between(upper: UpperFaces, p: Side, q: Side, at: int, name: str) -> Side
         return None
     shares = np.linspace(0.0, 1.0, settings.END_POINTS)[:, None]
     feet = upper.feet((1.0 - shares) * bridge[0] + shares * bridge[1])
+    if segment_lengths(feet.points).max() > JUMP * width / (len(shares) - 1):
+        feet = _over_edges(upper, bridge, (p.normals[at], q.normals[at])) or feet
     points, normals = feet.points.copy(), feet.normals.copy()
     points[[0, -1]] = bridge
     normals[0], normals[-1] = p.normals[at], q.normals[at]
@@ -227,6 +234,15 @@ def end_between(upper: UpperFaces, p: Side, q: Side, at: int, name: str) -> Side
     inward = unit(np.cross(normals, unit(np.gradient(points, axis=0))))
     inward *= np.sign(dot(inward, onward))[:, None]
     return Side(name, points, normals, inward, feet.faces)
+
+
+def _over_edges(upper: UpperFaces, bridge: Floats, normals: tuple[Floats, Floats]) -> Feet | None:
+    across = np.cross(bridge[1] - bridge[0], normals[0] + normals[1])
+    if norm(across) <= settings.CONFUSION:
+        return None
+    near = [upper.faces[i] for i in upper.near(bridge, norm(bridge[1] - bridge[0]))]
+    path = path_in_plane(near, bridge[0], bridge[1], across, 4 * settings.END_POINTS)
+    return None if path is None else upper.feet(path)
 
 
 def unit(vectors: Floats) -> Floats:
