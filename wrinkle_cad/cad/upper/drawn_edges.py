@@ -1,13 +1,12 @@
-"""Draws the outline of an opening onto one face: edges with a curve in space and in parameters.
+"""Draws a side of an opening onto one face: edges with a curve in space and in parameters.
 
 Splitting a face with edges that lie on it is some twenty times faster than with ribbons that cross
-it. It serves where the whole outline lies on one face; at its seam and in its poles a side is
+it. It serves where the whole side lies on one face; at its seam and in its poles a side is
 parted, since its curve in parameters jumps there.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from typing import Final
 
 import numpy as np
@@ -37,26 +36,20 @@ HALVINGS: Final = 16
 BETWEEN: Final = np.array([0.25, 0.5, 0.75])
 
 
-def drawn_edges(face: TopoDS_Face, sides: Sequence[Side]) -> list[TopoDS_Edge] | None:
-    """Returns the edges of all sides, or None where one cannot be drawn on the face exactly enough.
+def drawn_edges(face: TopoDS_Face, side: Side) -> list[TopoDS_Edge] | None:
+    """Returns the edges of a side, or None where it cannot be drawn on the face exactly enough.
 
     The curve in parameters runs through the feet of the side; the curve in space follows it on the
     surface, and the edge's tolerance is what they differ by.
     """
     parameters = FaceParameters(face)
-    edges = []
-    for side in sides:
-        arc = arc_lengths(side.points)
-        line = BSpline(*cubic_through(arc, parameters.led_through_poles(side.points)), 3)
-        pieces = parameters.pieces(line, arc)
-        if pieces is None or parameters.largest_gap(pieces[0].at[:1], line) > DRAWN_EDGE_GAP:
-            return None
-        for piece in pieces:
-            edge = _drawn_edge(face, parameters, line, piece)
-            if edge is None:
-                return None
-            edges.append(edge)
-    return edges
+    arc = arc_lengths(side.points)
+    line = BSpline(*cubic_through(arc, parameters.led_through_poles(side.points)), 3)
+    pieces = parameters.pieces(line, arc)
+    if pieces is None or parameters.largest_gap(arc, line) > DRAWN_EDGE_GAP:
+        return None
+    edges = [_drawn_edge(face, parameters, line, piece) for piece in pieces]
+    return None if None in edges else [edge for edge in edges if edge is not None]
 
 
 def _drawn_edge(

@@ -1,8 +1,8 @@
 """Cuts the faces of an upper along the outlines of openings.
 
-An outline on one face is drawn onto it. Any other becomes narrow ribbons that stand on the upper,
-one per side, which cross seams, gaps and borders without being told of them. The kernel splits the
-faces with these edges or ribbons.
+A side on one face is drawn onto it. Any other becomes a narrow ribbon that stands on the upper and
+crosses seams, gaps and borders without being told of them. The kernel splits the faces with these
+edges and ribbons.
 """
 
 from __future__ import annotations
@@ -20,6 +20,7 @@ from wrinkle_cad.cad.kernel.versions import shape_list
 from wrinkle_cad.errors import CadError
 
 from .drawn_edges import drawn_edges
+from .opening_outline import Side
 from .opening_plan import OpeningPlan
 from .pieces import Split, sorted_pieces
 from .projection import UpperFaces
@@ -44,12 +45,10 @@ def split_faces(faces: UpperFaces, plans: Sequence[OpeningPlan]) -> Split:
     with kernel_step(STEP):
         near, tools, drawn = set[int](), list[TopoDS_Shape](), list[TopoDS_Edge]()
         for plan in plans:
-            edges = _drawn(faces.faces, plan)
-            drawn += edges or ()
-            tools += edges or [
-                ribbon(side, plan.height, over, faces.faces)
-                for side, over in zip(plan.sides, plan.overrun, strict=True)
-            ]
+            for side, over in zip(plan.sides, plan.overrun, strict=True):
+                edges = _drawn(faces.faces, side, over)
+                drawn += edges or ()
+                tools += edges or [ribbon(side, plan.height, over, faces.faces)]
             points = np.vstack([side.points for side in plan.sides])
             near.update(faces.near(points, 2.0 * plan.height))
         splitter = BRepAlgoAPI_Splitter()
@@ -71,12 +70,15 @@ def split_faces(faces: UpperFaces, plans: Sequence[OpeningPlan]) -> Split:
     return sorted_pieces(pieces, section, plans)
 
 
-def _drawn(faces: Sequence[TopoDS_Face], plan: OpeningPlan) -> list[TopoDS_Edge] | None:
-    """Returns an outline as edges on the face that holds all of it, None if none does."""
-    owners = np.unique(np.concatenate([side.faces for side in plan.sides]))
-    if len(owners) > 1 or any(plan.ends_on_border):
+def _drawn(
+    faces: Sequence[TopoDS_Face], side: Side, overrun: tuple[float, float]
+) -> list[TopoDS_Edge] | None:
+    """Returns a side as edges on the face that holds all of it, None if none does."""
+    # Its ends may stand on the border of several faces.
+    owners = np.unique(side.faces[1:-1])
+    if len(owners) > 1 or max(overrun) > 0.0:
         return None
-    return drawn_edges(faces[int(owners[0])], plan.sides)
+    return drawn_edges(faces[int(owners[0])], side)
 
 
 def _pieces_of(splitter: BRepAlgoAPI_Splitter, face: TopoDS_Face) -> tuple[TopoDS_Face, ...]:
