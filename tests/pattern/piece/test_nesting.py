@@ -83,6 +83,7 @@ def test_a_search_by_the_clock_without_its_package_says_how_to_get_it(monkeypatc
         compacted(sheet, seconds=1)
 
 
+@pytest.mark.slow
 def test_a_hundred_copies_and_more_come_on_full_sheets():
     pieces, size = [replace(piece, quantity=18) for piece in strips_and_bands(6)], (600.0, 300.0)
     sheets = nested(pieces, sheet=size)
