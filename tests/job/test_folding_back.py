@@ -131,10 +131,7 @@ def nearly(points: Floats, arcs: Floats, drawing: dict[str, bool], *, mirrored: 
 
 @pytest.mark.parametrize(
     ("is_swapped", "p_reversed", "q_reversed"),
-    [
-        pytest.param(*drawing, marks=() if i == 6 else SLOW)
-        for i, drawing in enumerate(DRAWINGS)
-    ],
+    [pytest.param(*drawing, marks=() if i == 6 else SLOW) for i, drawing in enumerate(DRAWINGS)],
 )
 def test_the_left_piece_folds_back_onto_the_step_by_a_motion_and_the_right_one_by_a_mirror(
     is_swapped: bool, p_reversed: bool, q_reversed: bool, tmp_path: Path
