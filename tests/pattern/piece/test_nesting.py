@@ -134,6 +134,12 @@ def test_the_grain_decides_how_a_piece_lies():
     assert np.ptp(sheet.pieces[0].cut_line, axis=0) == pytest.approx((40.0, 120.0))
 
 
+def test_more_pieces_than_can_be_nested_in_time_are_refused_at_once():
+    (piece,) = make_pieces(*strips.rectangle(120.0, 40.0), name="strap")
+    with pytest.raises(InputError, match="1,000,000 pieces are to be nested"):
+        nested([replace(piece, quantity=1_000_000)], sheet=(300.0, 100.0))
+
+
 def test_a_piece_larger_than_the_sheet_is_refused():
     pieces = make_pieces(*strips.rectangle(120.0, 40.0), name="strap")
     with pytest.raises(InputError, match=r"strap is 120\.0 x 40\.0 mm"):

@@ -34,6 +34,8 @@ _FINEST: Final = 0.5
 """mm; no cell is smaller."""
 _EXPECTED: Final = 0.4
 """Utilisation that pieces have at least, else more of the sheet is looked at."""
+_MOST_PIECES: Final = 20_000
+"""5,000 take 10 s."""
 _PLACEMENTS: Final = 10_000
 """Pieces that are put down in all orders together."""
 _MOST_ORDERS: Final = 500
@@ -79,8 +81,14 @@ def nested(
         sheet: mm, length along the grain, which is laid along x, and width.
 
     Raises:
-        InputError: a piece is larger than a sheet.
+        InputError: a piece is larger than a sheet, or there are too many.
     """
+    count = sum(piece.quantity for piece in pieces)
+    if count > _MOST_PIECES:
+        raise InputError(
+            f"{count:,} pieces are to be nested, and at most {_MOST_PIECES:,} are. Ask for fewer "
+            "copies, and cut the sheets several times."
+        )
     for piece in pieces:
         check_fits(piece, sheet)
     pieces = [piece.with_grain_along_x() for piece in pieces]
