@@ -7,7 +7,7 @@ from typing import Any, Final
 
 from .job import Job
 from .outputs import outputs_together
-from .parts import read_chosen, strip_of
+from .parts import rails_of, read_chosen, strip_of
 from .summary import to_json
 
 _KINDS: Final = ("compare.json", "compare.html")
@@ -35,7 +35,7 @@ def compare_job(job: Job) -> tuple[dict[str, Any], tuple[Path, ...]]:
 
     rows = {}
     for given in chosen.strips:
-        strip = strip_of(job, given.p.shape, given.q.shape, given.name)
+        strip = strip_of(job, *rails_of(job, given), given.name)
         rows[strip.name] = compare(
             strip.p_samples.points,
             strip.q_samples.points,

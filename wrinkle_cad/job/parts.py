@@ -23,8 +23,9 @@ from .job import Job
 from .outputs import check_outputs_are_ours
 
 if TYPE_CHECKING:
-    from wrinkle_cad.cad.exchange.choose import Chosen
+    from wrinkle_cad.cad.exchange.choose import Chosen, StripInput
     from wrinkle_cad.cad.exchange.shapes import CadFile
+    from wrinkle_cad.cad.rail.directrix import Directrix
     from wrinkle_cad.wrinkle.cut_pattern import Pattern
     from wrinkle_cad.wrinkle.wrinkle_strip import WrinkleStrip
 
@@ -57,6 +58,25 @@ def read_chosen(job: Job, kinds: tuple[str, ...]) -> tuple[CadFile, Chosen]:
     check_outputs_are_ours(job, kinds)
     file = read_cad(job.input, unit=job.unit)
     return file, choose_inputs(file, p=job.p, q=job.q, upper=job.upper)
+
+
+def rails_of(job: Job, given: StripInput) -> tuple[Directrix, Directrix]:
+    """Returns P and Q of one strip of the file, gaps closed as the job asks.
+
+    Args:
+        job: the settings.
+        given: the two curves.
+
+    Raises:
+        InputError: a curve cannot be used.
+        CadError: the kernel cannot convert an edge.
+    """
+    from wrinkle_cad.cad.rail.directrix import make_directrix
+
+    return (
+        make_directrix(given.p.shape, name="P", join=job.join),
+        make_directrix(given.q.shape, name="Q", join=job.join),
+    )
 
 
 def strip_of(job: Job, p: object, q: object, name: str) -> WrinkleStrip:

@@ -99,7 +99,7 @@ def _read(job: Job) -> tuple[CadFile, Chosen]:
 def _make(job: Job, chosen: Chosen, clock: PhaseClock) -> Made:
     from wrinkle_cad.wrinkle.cut_pattern import pattern_of_strips
 
-    from .parts import limits_of, piece_settings_of, strip_of
+    from .parts import limits_of, piece_settings_of, rails_of, strip_of
     from .writing import Made
 
     with clock.phase("strip"):
@@ -114,7 +114,7 @@ def _make(job: Job, chosen: Chosen, clock: PhaseClock) -> Made:
         else:
             _check_no_waves(job)
             strips = tuple(
-                strip_of(job, given.p.shape, given.q.shape, given.name) for given in chosen.strips
+                strip_of(job, *rails_of(job, given), given.name) for given in chosen.strips
             )
     with clock.phase("surface"):
         for strip in strips:

@@ -14,7 +14,7 @@ from wrinkle_cad.wrinkle.triangulated_strip import TriangulatedStrip
 from wrinkle_cad.wrinkle.wrinkle_strip import WrinkleStrip
 
 from .job import Job
-from .parts import limits_of, material_of, strip_of
+from .parts import limits_of, material_of, rails_of, strip_of
 
 if TYPE_CHECKING:
     from wrinkle_cad.cad.exchange.choose import Chosen, StripInput
@@ -153,8 +153,7 @@ def _request(job: Job, given: StripInput) -> CarveRequest:
         # Bands as wide as the waves are high lie at 45 degrees; for drawn profiles ``carve`` sees.
         margin = max(abs(height) for height in job.height)
     return carve_request(
-        given.p.shape,
-        given.q.shape,
+        *rails_of(job, given),
         margin=margin,
         fade=job.fade,
         allow_split=job.allow_split,
@@ -170,7 +169,7 @@ def _profiles(job: Job, opening: Opening, given: StripInput) -> tuple[object, ob
             from wrinkle_cad.cad.upper.bands import side_curve
 
             return side_curve(opening.p_edges, "P"), side_curve(opening.q_edges, "Q")
-        return given.p.shape, given.q.shape
+        return rails_of(job, given)
     from wrinkle_cad.cad.upper.profiles import profile_curves
 
     return profile_curves(

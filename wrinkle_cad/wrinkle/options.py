@@ -39,6 +39,15 @@ class StripSettings:
             "slack of the convexity test", unit="mm", least=1e-15, most=1e3, when_none="derived"
         ),
     )
+    join: float = field(
+        default=0.0,
+        metadata=option(
+            "gaps between the edges of a rail up to this are closed, and reported",
+            unit="mm",
+            least=0.0,
+            most=1000.0,
+        ),
+    )
     surface: settings.Surface = field(
         default=settings.SURFACE,
         metadata=option("its faces: cones, whose banks are the exact curves, or flat facets"),

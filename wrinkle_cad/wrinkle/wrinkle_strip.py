@@ -25,8 +25,9 @@ class WrinkleStrip(TriangulatedStrip):
     drawn the other way.
 
     Args:
-        p: directrix P: a build123d Edge, Wire, ShapeList or list of edges, the same from CadQuery
-            (anything with ``.wrapped``), or an array (k, 3) of points in mm.
+        p: directrix P: a build123d Edge, Wire, Sketch, builder, ShapeList or list of edges in any
+            order, the same from CadQuery (anything with ``.wrapped``, or a Workplane), or an array
+            (k, 3) of points in mm. It starts where its first edge, as drawn, starts.
         q: directrix Q, likewise; turned round when it runs against P, which is reported.
         options: how it is sampled, searched and made, its name and color, and the material, by
             name; ``help(WrinkleStrip.__init__)`` lists them with their units and defaults.
@@ -53,7 +54,8 @@ class WrinkleStrip(TriangulatedStrip):
         """Finds the strip."""
         check_known(options, options_of(StripArguments), "WrinkleStrip()")
         chosen = StripArguments(p, q, **options)
-        given_p, given_q = make_directrix(p, name="P"), make_directrix(q, name="Q")
+        given_p = make_directrix(p, name="P", join=chosen.join)
+        given_q = make_directrix(q, name="Q", join=chosen.join)
         check_distinct(given_p, given_q)
         p_rail, q_rail, was_turned = orient_alike(given_p, given_q)
         found = found_between(p_rail, q_rail, chosen)
@@ -69,6 +71,8 @@ class WrinkleStrip(TriangulatedStrip):
             k_factor=chosen.k_factor,
             grain=chosen.grain,
             findings=(
+                *given_p.findings,
+                *given_q.findings,
                 *(_orientation_findings(chosen.name) if was_turned else ()),
                 *unused_findings(chosen.name, found.triangulation.unused),
             ),

@@ -1,6 +1,7 @@
 from __future__ import annotations
 
 import importlib.util
+import itertools
 import math
 from pathlib import Path
 
@@ -13,7 +14,7 @@ from OCP.BRepBuilderAPI import BRepBuilderAPI_MakeEdge
 from OCP.BRepTools import BRepTools
 from OCP.TopoDS import TopoDS_Edge, TopoDS_Shape
 
-from tests.cad.makers import box, line, polyline
+from tests.cad.makers import Point, box, line, polyline
 from tests.cad.strips import edge_of, random_edge
 from wrinkle_cad.cad.kernel.curves import edge_curve
 from wrinkle_cad.cad.kernel.topology import as_edge, edges_of, faces_of, make_compound, make_vertex
@@ -84,7 +85,8 @@ def test_tangents_are_units_along_the_rail() -> None:
 def test_edges_in_order_are_chained_and_flipped_as_needed() -> None:
     for edges in (
         [line(A, B), line(B, C), line(C, D)],
-        [line(B, A), line(C, B), line(C, D)],
+        [line(A, B), line(C, B), line(C, D)],
+        [line(B, A), line(B, C), line(C, D)],
         [line(A, B), line(C, B), line(D, C)],
     ):
         rail = make_directrix(edges)
@@ -93,8 +95,28 @@ def test_edges_in_order_are_chained_and_flipped_as_needed() -> None:
         assert rail.length == 13.0
 
 
-def test_a_list_keeps_its_order_even_backwards() -> None:
-    assert ends(make_directrix([line(C, D), line(B, C), line(A, B)])) == [list(D), list(A)]
+@pytest.mark.parametrize(
+    "drawn",
+    [
+        [(A, B), (B, C), (C, D)],
+        [(A, B), (C, B), (C, D)],
+        [(B, A), (B, C), (C, D)],
+    ],
+)
+def test_edges_in_any_order_run_the_way_most_were_drawn(drawn: list[tuple[Point, Point]]) -> None:
+    edges = [line(*pair) for pair in drawn]
+    for shuffled in itertools.permutations(edges):
+        for source in (list(shuffled), make_compound(shuffled)):
+            assert ends(make_directrix(source)) == [list(A), list(D)]
+
+
+def test_edges_that_run_alike_make_a_rail_that_runs_so() -> None:
+    assert ends(make_directrix([line(D, C), line(C, B), line(B, A)])) == [list(D), list(A)]
+
+
+def test_of_two_edges_drawn_head_to_head_the_first_leads() -> None:
+    assert ends(make_directrix([line(A, B), line(C, B)])) == [list(A), list(C)]
+    assert ends(make_directrix([line(C, B), line(A, B)])) == [list(C), list(A)]
 
 
 def test_a_reversed_edge_runs_backwards() -> None:
@@ -104,7 +126,7 @@ def test_a_reversed_edge_runs_backwards() -> None:
 
 def test_edges_of_a_compound_are_put_in_order() -> None:
     rail = make_directrix(make_compound([line(C, B), line(C, D), line(B, A)]))
-    assert {tuple(end) for end in ends(rail)} == {A, D}
+    assert ends(rail) == [list(D), list(A)]
     assert rail.length == 13.0
 
 
@@ -135,7 +157,8 @@ def test_a_circle_is_closed_and_smooth() -> None:
 
 def test_a_gap_is_refused_with_its_size_and_place() -> None:
     message = (
-        r"Rail P has a gap of 0\.5 mm between edges 1 and 2 at \(3, 4, 0\); at most 0\.0006 mm"
+        r"Rail P has a gap of 0\.5 mm: its edges are apart at \(3, 4, 0\) and \(3, 4\.5, 0\) mm,"
+        r" and at most 0\.0006 mm is allowed\. .*the option join"
     )
     with pytest.raises(InputError, match=message):
         make_directrix([line(A, B), line((3.0, 4.5, 0.0), D)], name="P")

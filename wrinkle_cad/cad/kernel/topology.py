@@ -110,6 +110,11 @@ def shells_of(shape: TopoDS_Shape) -> list[TopoDS_Shell]:
     return [TopoDS.Shell(shell) for shell in _unique(shape, TopAbs_SHELL)]
 
 
+def wires_of(shape: TopoDS_Shape) -> list[TopoDS_Wire]:
+    """Returns the wires of a shape, each once, in the kernel's order."""
+    return [TopoDS.Wire(wire) for wire in _unique(shape, TopAbs_WIRE)]
+
+
 def _unique(shape: TopoDS_Shape, kind: TopAbs_ShapeEnum) -> list[TopoDS_Shape]:
     found = ShapeMap()
     TopExp.MapShapes_s(shape, kind, found)

@@ -1,193 +1,231 @@
 """Edges of whatever a caller holds, put in a row: the raw material of a directrix.
 
-A list is chained in the order given, a wire in its own, a compound (what a STEP file makes of a
-wire) in the order that its ends ask for. Edges are flipped as needed. Ends that nearly meet are
-moved to their middle; ends further apart are refused.
+Edges may be given in any order and direction. Ends that nearly meet are moved to their middle; ends
+further apart are refused, unless their own vertices or the caller say that they meet. Edges without
+length are left out.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
 from OCP.BRep import BRep_Tool
-from OCP.BRepTools import BRepTools_WireExplorer
-from OCP.TopAbs import TopAbs_COMPOUND, TopAbs_EDGE, TopAbs_FACE, TopAbs_WIRE
-from OCP.TopExp import TopExp_Explorer
-from OCP.TopoDS import TopoDS_Edge, TopoDS_Iterator, TopoDS_Shape, TopoDS_Wire
+from OCP.TopExp import TopExp
+from OCP.TopoDS import TopoDS_Edge
 
 from wrinkle_cad import settings
 from wrinkle_cad.cad.kernel.curves import edge_curve
 from wrinkle_cad.cad.kernel.evaluation import PoleCurve
 from wrinkle_cad.cad.kernel.splines import curve_arrays
-from wrinkle_cad.cad.kernel.topology import as_edge, as_wire, edges_of, kind_name
-from wrinkle_cad.errors import InputError
+from wrinkle_cad.errors import Finding, InputError
 from wrinkle_cad.strip.places import place_text
 from wrinkle_cad.strip.portable import norm
 
+from .chain_order import chain_order
+from .drawn_edges import drawn_edges
+
 Floats = NDArray[np.float64]
 
+LOOSE_PER_SIZE: Final = 0.05
+"""The share of the smaller of two edges up to which their vertices' tolerances are believed."""
 
-def chain_of(source: object, name: str) -> list[PoleCurve]:
-    """Returns the curves of a source, each starting exactly where the one before it ends.
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Chain:
+    """The curves of one rail."""
+
+    curves: tuple[PoleCurve, ...]
+    """In order, each starting exactly where the one before it ends."""
+    findings: tuple[Finding, ...]
+    """What was left out or closed."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Piece:
+    curve: PoleCurve
+    slack: tuple[float, float]
+    """mm; how far its ends may lie from their vertices."""
+    has_one_vertex: bool
+    """Whether it starts and ends in the same vertex."""
+
+    def turned(self) -> _Piece:
+        return _Piece(self.curve.reversed(), self.slack[::-1], self.has_one_vertex)
+
+
+def chain_of(source: object, name: str, join: float = 0.0) -> Chain:
+    """Returns the curves of a source, from the start of the rail to its end.
 
     Args:
-        source: an edge, wire, compound of edges, or several edges and wires in order; from
+        source: an edge, wire, compound of edges, or several edges and wires in any order; from
             build123d, CadQuery or the kernel itself.
         name: what messages call the rail, at the start of a sentence.
+        join: mm; gaps up to this are closed, and reported.
 
     Raises:
-        InputError: no curve in the source, a surface in it, an edge of no length, or a gap.
+        InputError: no curve in the source, a surface in it, an edge of no length, an edge that
+            occurs twice, or a gap.
         CadError: the kernel cannot convert an edge.
     """
-    shapes = _shapes_of(source, name)
-    edges = [edge for shape in shapes for edge in _edges_in_order(shape, name)]
-    curves = [_curve_of(edge) for edge in edges if not BRep_Tool.Degenerated_s(edge)]
-    curves = [curve for curve in curves if _size(curve) > settings.CONFUSION] or curves
-    if not curves:
+    edges = drawn_edges(source, name)
+    pieces = [_piece_of(edge) for edge in edges if not BRep_Tool.Degenerated_s(edge)]
+    whole = [piece for piece in pieces if _size(piece.curve) > settings.CONFUSION]
+    dropped, pieces = len(edges) - len(whole), whole or pieces
+    if not pieces:
         raise InputError(f"{name} has no curve in it. Pass at least one edge.")
-    _check_once(curves, name)
+    _check_finite([piece.curve for piece in pieces], name)
+    _check_once([piece.curve for piece in pieces], name)
+    pieces, found = _joined(_in_order(pieces, name, join), name, join)
+    if dropped and whole:
+        found = (_dropped_finding(name, dropped), *found)
+    return Chain(tuple(piece.curve for piece in pieces), found)
+
+
+def _piece_of(edge: TopoDS_Edge) -> _Piece:
+    curve = edge_curve(edge)
+    poles, weights, knots, multiplicities = curve_arrays(curve)
+    vertices = (TopExp.FirstVertex_s(edge, True), TopExp.LastVertex_s(edge, True))
+    slack = [0.0 if at.IsNull() else float(BRep_Tool.Tolerance_s(at)) for at in vertices]
+    return _Piece(
+        PoleCurve(curve.Degree(), knots, multiplicities, poles, weights),
+        (slack[0], slack[1]),
+        not vertices[0].IsNull() and bool(vertices[0].IsSame(vertices[1])),
+    )
+
+
+def _check_finite(curves: Sequence[PoleCurve], name: str) -> None:
     for curve in curves:
         if not np.isfinite(curve.poles).all():
             raise InputError(
                 f"{name} has a curve with NaN or infinite poles. Pass finite geometry."
             )
-    if len(shapes) == 1 and shapes[0].ShapeType() == TopAbs_COMPOUND:
-        curves = _ordered(curves)
-    return _joined(_turned(curves), name)
-
-
-def _shapes_of(source: object, name: str) -> list[TopoDS_Shape]:
-    shape = source if isinstance(source, TopoDS_Shape) else getattr(source, "wrapped", None)
-    if isinstance(shape, TopoDS_Shape):
-        if shape.IsNull():
-            raise InputError(f"{name} is an empty {type(source).__name__}. Pass one with a curve.")
-        return [shape]
-    values = getattr(source, "vals", None)  # CadQuery's Workplane
-    line = getattr(source, "line", None)  # build123d's BuildLine
-    if callable(values):
-        source = values()
-    elif hasattr(line, "wrapped"):
-        source = [line]
-    if isinstance(source, Iterable) and not isinstance(source, str | bytes):
-        return [shape for item in source for shape in _shapes_of(item, name)]
-    raise InputError(
-        f"{name} cannot be of type {type(source).__name__}: pass an edge, a wire, a list of edges"
-        " or a (k, 3) array."
-    )
-
-
-def _edges_in_order(shape: TopoDS_Shape, name: str) -> list[TopoDS_Edge]:
-    kind = shape.ShapeType()
-    if kind == TopAbs_EDGE:
-        return [as_edge(shape)]
-    if kind == TopAbs_WIRE:
-        return _edges_of_wire(as_wire(shape))
-    if kind == TopAbs_COMPOUND and not TopExp_Explorer(shape, TopAbs_FACE).More():
-        return edges_of(shape)
-    raise InputError(
-        f"{name} cannot be a {kind_name(shape)}: pass a curve, such as one of its edges or wires."
-    )
-
-
-def _edges_of_wire(wire: TopoDS_Wire) -> list[TopoDS_Edge]:
-    explorer, followed = BRepTools_WireExplorer(wire), []
-    while explorer.More():
-        followed.append(explorer.Current())
-        explorer.Next()
-    stored, iterator = [], TopoDS_Iterator(wire)
-    while iterator.More():
-        stored.append(as_edge(iterator.Value()))
-        iterator.Next()
-    # The explorer stops where vertices are not shared; the gap, if any, is judged later.
-    return followed if len(followed) == len(stored) else stored
-
-
-def _curve_of(edge: TopoDS_Edge) -> PoleCurve:
-    curve = edge_curve(edge)
-    poles, weights, knots, multiplicities = curve_arrays(curve)
-    return PoleCurve(curve.Degree(), knots, multiplicities, poles, weights)
 
 
 def _check_once(curves: Sequence[PoleCurve], name: str) -> None:
     """Checks that no edge occurs twice, as the seam does in the outer wire of a cone."""
-    seen: dict[bytes, int] = {}
-    for i, curve in enumerate(curves):
+    seen: set[bytes] = set()
+    for curve in curves:
         poles = np.round(curve.poles, 9) + 0.0
         keys = {rows.tobytes() for rows in (poles, poles[::-1])}
-        if any(key in seen for key in keys):
+        if keys & seen:
             size = _size(curve)
             start, end = (place_text(at, size) for at in curve.poles[[0, -1]])
             raise InputError(
-                f"{name} runs twice over one edge, from {start} to {end}. A rail passes every place"
-                " once: choose its edges one by one, or leave that edge out."
+                f"{name} runs twice over one edge, from {start} to {end}: an edge is given twice,"
+                " or it is the seam of a closed face, which its outline passes there and back. A"
+                " rail passes every place once: choose its edges one by one, or leave that edge"
+                " out."
             )
-        seen |= dict.fromkeys(keys, i)
+        seen |= keys
 
 
 def _size(curve: PoleCurve) -> float:
     return float(np.ptp(curve.poles, axis=0).max())
 
 
-def _ordered(curves: Sequence[PoleCurve]) -> list[PoleCurve]:
-    """Returns the curves in the order their ends ask for, from a loose end if there is one."""
-    ends = np.array([(curve.poles[0], curve.poles[-1]) for curve in curves])
-    apart = np.linalg.norm(ends[:, None, :, None] - ends[None, :, None, :], axis=4)
-    apart[np.arange(len(curves)), np.arange(len(curves))] = np.inf
-    nearest = apart.min(axis=(1, 3), initial=np.inf)
-    first, start = divmod(int(np.argmax(nearest)), 2)
-    order, side = [first], 1 - start
-    left = set(range(len(curves))) - {order[0]}
-    while left:
-        rest = sorted(left)
-        choice = int(np.argmin(apart[order[-1], rest, side, :]))
-        j, entry = rest[choice // 2], choice % 2
-        order.append(j)
-        side = 1 - entry
-        left.remove(j)
-    return [curves[j] for j in order]
+def _in_order(pieces: Sequence[_Piece], name: str, join: float) -> list[_Piece]:
+    ends = np.array([piece.curve.poles[[0, -1]] for piece in pieces])
+    slack = max((max(piece.slack) for piece in pieces), default=0.0)
+    meeting = max(_limit(pieces), join, 2.0 * slack)
+    _check_no_branch(ends, min(meeting, _limit(pieces)), name)
+    return [
+        pieces[link.edge].turned() if link.is_turned else pieces[link.edge]
+        for link in chain_order(ends, meeting)
+    ]
 
 
-def _turned(curves: Sequence[PoleCurve]) -> list[PoleCurve]:
-    """Returns the curves each flipped so that it starts near the end of the one before.
-
-    The first runs as given unless only its start lies near the second; on a tie nothing is flipped.
-    """
-    turned = list(curves)
-    if len(turned) > 1:
-        ends = turned[1].poles[[0, -1]]
-        from_start = np.linalg.norm(turned[0].poles[0] - ends, axis=1).min()
-        from_end = np.linalg.norm(turned[0].poles[-1] - ends, axis=1).min()
-        if from_start < from_end and not np.isclose(
-            from_start, from_end, rtol=0.0, atol=settings.RAIL_GAP
-        ):
-            turned[0] = turned[0].reversed()
-    for i in range(1, len(turned)):
-        here = turned[i - 1].poles[-1]
-        start, end = np.linalg.norm(turned[i].poles[[0, -1]] - here, axis=1)
-        if end < start:
-            turned[i] = turned[i].reversed()
-    return turned
+def _limit(pieces: Sequence[_Piece]) -> float:
+    size = max(_size(piece.curve) for piece in pieces)
+    return min(settings.RAIL_GAP, settings.RAIL_GAP_PER_SIZE * size)
 
 
-def _joined(curves: Sequence[PoleCurve], name: str) -> list[PoleCurve]:
-    """Returns the curves with nearly meeting ends moved to their middle, refusing gaps."""
-    size = max(_size(curve) for curve in curves)
-    limit = min(settings.RAIL_GAP, settings.RAIL_GAP_PER_SIZE * size)
-    ends = np.array([(curve.poles[0], curve.poles[-1]) for curve in curves])
-    for i in range(1, len(curves)):
-        gap = norm(ends[i, 0] - ends[i - 1, 1])
-        if gap > limit:
-            x, y, z = ends[i - 1, 1]
+def _check_no_branch(ends: Floats, meeting: float, name: str) -> None:
+    """Checks that no place is the end of an odd number of edges above one."""
+    points = ends.reshape(-1, 3)
+    for point in points if len(points) > 4 else ():
+        near = int((np.abs(points - point).max(axis=1) <= meeting).sum())
+        if near > 2 and near % 2:
+            size = float(np.ptp(points, axis=0).max())
             raise InputError(
-                f"{name} has a gap of {gap:.4g} mm between edges {i} and {i + 1} at"
-                f" ({x:.4g}, {y:.4g}, {z:.4g}); at most {limit:.4g} mm is allowed. Join the edges"
-                " or pass them in order."
+                f"{name} branches: {near} edges meet at {place_text(point, size)}, and a rail is"
+                " one line without branches. Choose the edges of one line."
             )
-        ends[i, 0] = ends[i - 1, 1] = (ends[i, 0] + ends[i - 1, 1]) / 2.0
+
+
+def _allowed(one: _Piece, other: _Piece, limit: float) -> float:
+    """Returns mm: how far the end of one edge may be from the start of the next."""
+    smaller = min(_size(one.curve), _size(other.curve))
+    return max(limit, min(one.slack[1] + other.slack[0], LOOSE_PER_SIZE * smaller))
+
+
+def _joined(
+    pieces: Sequence[_Piece], name: str, join: float
+) -> tuple[list[_Piece], tuple[Finding, ...]]:
+    """Returns the pieces with nearly meeting ends moved to their middle, refusing gaps."""
+    limit = _limit(pieces)
+    ends = np.array([piece.curve.poles[[0, -1]] for piece in pieces])
+    closed: list[tuple[float, Floats]] = []
+    for i in range(1, len(pieces)):
+        gap = norm(ends[i, 0] - ends[i - 1, 1])
+        allowed = _allowed(pieces[i - 1], pieces[i], limit)
+        if gap > max(allowed, join):
+            raise _gap_error(name, gap, ends[i - 1, 1], ends[i, 0], allowed)
+        middle = (ends[i, 0] + ends[i - 1, 1]) / 2.0
+        if gap > allowed:
+            closed.append((gap, middle))
+        ends[i, 0] = ends[i - 1, 1] = middle
+    gap, allowed = norm(ends[0, 0] - ends[-1, 1]), _closing(pieces, limit)
+    if gap <= max(allowed, join if len(pieces) > 1 else 0.0):
+        middle = (ends[0, 0] + ends[-1, 1]) / 2.0
+        if gap > allowed:
+            closed.append((gap, middle))
+        ends[0, 0] = ends[-1, 1] = middle
+    joined = [
+        _Piece(piece.curve.joined(*ends[i]), piece.slack, piece.has_one_vertex)
+        for i, piece in enumerate(pieces)
+    ]
+    return joined, tuple(_closed_finding(name, gap, at) for gap, at in closed)
+
+
+def _closing(pieces: Sequence[_Piece], limit: float) -> float:
+    """Returns mm: how far the ends of the whole rail may be apart for it to be closed."""
+    if len(pieces) > 1:
+        return _allowed(pieces[-1], pieces[0], limit)
     # The ends of one edge are where its author put them; only edges are joined to one another.
-    closing = limit if len(curves) > 1 else min(limit, settings.CONFUSION)
-    if norm(ends[0, 0] - ends[-1, 1]) <= closing:
-        ends[0, 0] = ends[-1, 1] = (ends[0, 0] + ends[-1, 1]) / 2.0
-    return [curve.joined(*ends[i]) for i, curve in enumerate(curves)]
+    (piece,) = pieces
+    if piece.has_one_vertex:
+        return max(limit, min(sum(piece.slack), LOOSE_PER_SIZE * _size(piece.curve)))
+    return min(limit, settings.CONFUSION)
+
+
+def _gap_error(name: str, gap: float, end: Floats, start: Floats, allowed: float) -> InputError:
+    places = " and ".join(f"({x:.6g}, {y:.6g}, {z:.6g})" for x, y, z in (end + 0.0, start + 0.0))
+    return InputError(
+        f"{name} has a gap of {gap:.4g} mm: its edges are apart at {places} mm, and at most"
+        f" {allowed:.4g} mm is allowed. Pass the edges of one line, lengthen one of the two, or"
+        " close the gap with the option join."
+    )
+
+
+def _closed_finding(name: str, gap: float, at: Floats) -> Finding:
+    x, y, z = at + 0.0
+    return Finding(
+        "gap-closed",
+        "info",
+        f"{name} had a gap of {gap:.4g} mm at ({x:.6g}, {y:.6g}, {z:.6g}) mm, which was closed"
+        " in its middle as asked (join).",
+    )
+
+
+def _dropped_finding(name: str, count: int) -> Finding:
+    edges = "An edge" if count == 1 else f"{count} edges"
+    are = "is" if count == 1 else "are"
+    return Finding(
+        "edges-without-length",
+        "info",
+        f"{edges} of {name[0].lower()}{name[1:]} {are} no longer than {settings.CONFUSION:g} mm and"
+        f" {'was' if count == 1 else 'were'} left out.",
+    )

@@ -8,7 +8,7 @@ parameter runs from 0 to the length of the rail, near the arc length but not equ
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -22,7 +22,7 @@ from wrinkle_cad import settings
 from wrinkle_cad.cad.kernel.evaluation import PoleCurve
 from wrinkle_cad.cad.kernel.splines import make_curve
 from wrinkle_cad.cad.kernel.steps import kernel_step
-from wrinkle_cad.errors import InputError
+from wrinkle_cad.errors import Finding, InputError
 from wrinkle_cad.strip.curve.polyline import polyline_length, segment_lengths
 from wrinkle_cad.strip.portable import dot
 
@@ -67,6 +67,9 @@ class Directrix:
     is_reversed: bool
     """Whether it runs against what it was made from."""
 
+    findings: tuple[Finding, ...] = ()
+    """What was left out of what it was made from, or closed."""
+
     @property
     def is_point(self) -> bool:
         """Whether it has no length: the strip to it is a cone."""
@@ -109,20 +112,22 @@ class Directrix:
         return found
 
 
-def make_directrix(source: object, *, name: str = "") -> Directrix:
+def make_directrix(source: object, *, name: str = "", join: float = 0.0) -> Directrix:
     """Returns the directrix that a curve or a row of points describes.
 
     Args:
         source: an edge, a wire, a compound of edges or a list of edges and wires (build123d,
-            CadQuery or the kernel's own; a list is chained in the order given, each edge flipped as
-            needed, the first one only if it has to); or points (k, 3) in mm, joined by straight
-            lines, which are then the samples; or a directrix, returned as it is. A vertex, an edge
-            without length or a single row is a point, the apex of a cone.
+            CadQuery or the kernel's own), in any order: the rail starts where its first edge, as
+            drawn or stored, starts; or points (k, 3) in mm, joined by straight lines, which are
+            then the samples; or a directrix, returned as it is. A vertex, an edge without length or
+            a single row is a point, the apex of a cone.
         name: what messages call it.
+        join: mm; gaps between edges up to this are closed, and reported in ``findings``.
 
     Raises:
         InputError: no curve; NaN or infinite coordinates; no length; edges that do not meet within
-            1e-3 mm (1e-4 of their size, if that is less); points that repeat.
+            1e-3 mm (1e-4 of their size, if that is less), their vertices' tolerances or ``join``;
+            points that repeat.
         CadError: the kernel cannot make a B-spline of an edge.
     """
     if isinstance(source, Directrix):
@@ -134,7 +139,8 @@ def make_directrix(source: object, *, name: str = "") -> Directrix:
         return _point(name, apex)
     if points is not None:
         return assembled(name, label, [_polyline(points, label)], is_polyline=True)
-    return assembled(name, label, chain_of(source, label))
+    chain = chain_of(source, label, join)
+    return replace(assembled(name, label, chain.curves), findings=chain.findings)
 
 
 def _point(name: str, place: Floats) -> Directrix:
@@ -275,15 +281,11 @@ def reversed_directrix(directrix: Directrix) -> Directrix:
         )
         for piece in directrix.pieces[::-1]
     )
-    return Directrix(
-        name=directrix.name,
+    return replace(
+        directrix,
         pieces=pieces,
         curves=tuple(_kernel_curve(piece) for piece in pieces),
-        interval=directrix.interval,
         breaks=tuple(start + end - at for at in directrix.breaks[::-1]),
-        length=directrix.length,
-        is_closed=directrix.is_closed,
-        is_polyline=directrix.is_polyline,
         is_reversed=not directrix.is_reversed,
     )
 
