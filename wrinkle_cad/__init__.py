@@ -28,6 +28,7 @@ if TYPE_CHECKING:
     from .cad.upper.stitch import Stitched as Stitched
     from .cad.upper.stitch import stitch as stitch
     from .errors import CadError as CadError
+    from .errors import ConstraintError as ConstraintError
     from .errors import ExportError as ExportError
     from .errors import Finding as Finding
     from .errors import InputError as InputError
@@ -74,6 +75,7 @@ _MODULE_OF: Final = {
     "Finding": "errors",
     "WrinkleError": "errors",
     "WrinkleWarning": "errors",
+    "ConstraintError": "errors",
     "InputError": "errors",
     "JobError": "errors",
     "CadError": "errors",

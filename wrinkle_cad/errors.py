@@ -69,6 +69,20 @@ class InputError(WrinkleError, ValueError):
     """
 
 
+class ConstraintError(InputError):
+    """No strip between two rails keeps what was asked of its rulings.
+
+    Example:
+        >>> from wrinkle_cad import WrinkleStrip
+        >>> p, q = [[0, 0, 0], [50, 0, 9], [100, 0, 0]], [[0, 30, 0], [50, 30, 9], [100, 30, 0]]
+        >>> try:
+        ...     WrinkleStrip(p, q, max_ruling=20)
+        ... except ConstraintError as error:
+        ...     print(str(error)[:69])
+        No strip between these rails keeps max_ruling of 20 mm: the longest r
+    """
+
+
 class JobError(InputError):
     """The settings of a job contradict each other or do not fit the input file.
 

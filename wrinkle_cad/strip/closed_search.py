@@ -12,8 +12,12 @@ the best closed path.
 Pinned bridges lie at places of the strip's cover, where it runs on and on around: the rails are
 started at the first of them, and bridges are barred that no path through the others can have.
 
-Starts are taken on the rail with fewer samples. Smooth strips of 180 and 240 samples took one to
-four programs, flat and noisy ones up to forty.
+What each program finds out is a bound for the bridges as well: if the least cost of coming to a
+bridge and that of going on from it are together more than the best closed path costs, no better one
+has it. So the programs behind the first look at a corridor of bridges only (closed_corridor).
+
+Starts are taken on the rail with fewer samples. Strips of 180 and 240 samples took one to four
+programs if smooth, up to forty if flat or noisy.
 """
 
 from __future__ import annotations
@@ -22,23 +26,23 @@ import heapq
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from itertools import combinations, product
+from typing import Final
 
 import numpy as np
 import numpy.typing as npt
 
-from .bars import Bars, bar_row, no_bars
-from .compiled import compiled
-from .convexity import judge_row
-from .folding import cost_row, new_costs
-from .global_search import decide_row
+from .bars import Bars, no_bars
+from .closed_corridor import Corridor
+from .closed_program import NEVER, NOTHING, Limits, decide_range, follow_around, whole_window
 from .objective import TIE, Weights
-from .sightlines import VIEW_ROWS, bank_lengths, look_along
 
 Floats = npt.NDArray[np.float64]
 Steps = npt.NDArray[np.int8]
 
-_NEVER = 1e300
-"""Cost in the first part, a count, of what is not allowed."""
+GRAIN: Final = 1024.0
+"""Charges of counts are whole numbers of one part in so many."""
+LARGEST_COUNT: Final = 2.0**40
+"""Sums of counts below this are exact with such charges."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -51,68 +55,6 @@ class ClosedPath:
     """(m+n,) int8; 0 a P-step, 1 a Q-step, from the start until it is reached again."""
     programs: int
     """How many dynamic programs it took, each over m times n to 2 n bridges."""
-
-
-@compiled
-def _decide_range(
-    p: Floats,
-    q: Floats,
-    first: int,
-    starts: int,
-    weights: Weights,
-    planarity: float,
-    nothing: float,
-    energy: int,
-    bars: Bars,
-) -> tuple[Floats, npt.NDArray[np.uint8]]:
-    """One program over the starts (0, first), ..., (0, first + starts - 1).
-
-    Returns:
-        (starts, parts): the least cost from each start to any of the ends. (m, n + starts) uint8:
-        the step to take at samples 1 to m of P, as decide_row writes it.
-    """
-    m, n = p.shape[0], q.shape[1]
-    count = n + starts
-    columns, q_banks = np.empty((3, count)), np.empty((3, count + 1))
-    for c in range(count + 1):
-        here, before = (first + c) % n, (first + c - 1) % n
-        for axis in range(3):
-            q_banks[axis, c] = q[axis, here] - q[axis, before]
-            if c < count:
-                columns[axis, c] = q[axis, here]
-    view, valid, costs = np.empty((VIEW_ROWS, count)), np.empty(count, np.bool_), new_costs(count)
-    banks, p_banks = np.empty((4, count)), np.empty((3, 2))
-    banks[2] = bank_lengths(q_banks[:, :-1])
-    banks[3] = bank_lengths(q_banks[:, 1:])
-    ahead = np.zeros((count, len(weights)))
-    ahead[:n, 0] = _NEVER
-    choices = np.empty((m, count), dtype=np.uint8)
-    for i in range(m, 0, -1):
-        for axis in range(3):
-            p_banks[axis, 0] = p[i % m, axis] - p[i - 1, axis]
-            p_banks[axis, 1] = p[(i + 1) % m, axis] - p[i % m, axis]
-        lengths = bank_lengths(p_banks)
-        banks[0], banks[1] = lengths[0], lengths[1]
-        look_along(p[i % m], p_banks, columns, q_banks, view)
-        judge_row(view, planarity, valid)
-        cost_row(view, banks, nothing, planarity, energy, costs)
-        bar_row(view, Bars(bars.bridges[:, first:], bars.least_cosine), i - 1, costs)
-        decide_row(weights, False, view, valid, costs, ahead, choices[i - 1])
-    return ahead[:starts].copy(), choices
-
-
-@compiled
-def _follow_around(choices: npt.NDArray[np.uint8], start: int) -> tuple[Steps, int]:
-    """The steps from (0, start) until row m is left, and the column where it is left."""
-    m, count = choices.shape
-    steps = np.zeros(m + count, dtype=np.int8)
-    number, i, j, step = 1, 1, start, 0
-    while i <= m:
-        step = (choices[i - 1, j] >> step) & 1
-        steps[number] = step
-        number += 1
-        i, j = i + 1 - step, j + step
-    return steps[: number - 1], j
 
 
 class _Cost:
@@ -136,7 +78,7 @@ class _Search:
         p: Floats,
         q: Floats,
         weights: Weights,
-        limits: tuple[float, float, int],
+        limits: Limits,
         bars: Bars,
     ) -> None:
         self.p, self.columns = p, np.ascontiguousarray(q.T)
@@ -144,12 +86,15 @@ class _Search:
         self.bars = Bars(np.ascontiguousarray(bars.bridges), bars.least_cosine)
         self.programs = 0
         self.best: tuple[_Cost, int, Steps] | None = None
+        self.charge = np.zeros(len(weights))
+        self.corridor: Corridor | None = None
 
     @property
     def cost(self) -> _Cost:
         """Of the best closed path, once the search has run."""
         assert self.best is not None
-        return self.best[0]
+        own = self.best[0].parts - self.columns.shape[1] * self.charge
+        return _Cost(own, self.weights)
 
     @property
     def found(self) -> tuple[int, Steps]:
@@ -161,6 +106,8 @@ class _Search:
         """Finds the best closed path."""
         ranges: list[tuple[_Cost, int, int, list[_Cost]]] = []
         self._search_range(0, self.columns.shape[1], ranges)
+        if ranges:
+            ranges = self._charged_anew(ranges[0][0])
         while ranges:
             bound, first, cut, costs = heapq.heappop(ranges)
             if not self._is_open(bound):
@@ -170,6 +117,26 @@ class _Search:
                 if part:
                     self._search_range(part[0], part[-1] + 1, ranges)
 
+    def _charged_anew(self, bound: _Cost) -> list[tuple[_Cost, int, int, list[_Cost]]]:
+        """The whole range, searched with a charge for each step on Q that is left out.
+
+        A path that ends before it has gone around saves what the missing steps cost, and its bound
+        is worth little. Closed paths all have n such steps, so the charge changes nothing between
+        them. It is the mean cost of a step; that of counts is rounded, so that they stay exact.
+        """
+        m, n = len(self.p), self.columns.shape[1]
+        is_real = np.array([part[TIE] > 0.0 for part in self.weights])
+        mean = bound.parts / (m + n)
+        rounded = np.where(bound.parts < LARGEST_COUNT, np.round(GRAIN * mean) / GRAIN, 0.0)
+        self.charge = np.where(is_real, mean, rounded)
+        self.corridor = Corridor(
+            self.p, self.columns, self.weights, self.limits, self.bars, self.charge
+        )
+        self.best = None
+        ranges: list[tuple[_Cost, int, int, list[_Cost]]] = []
+        self._search_range(0, n, ranges)
+        return ranges
+
     def _is_open(self, bound: _Cost) -> bool:
         return self.best is None or bound < self.best[0]
 
@@ -177,37 +144,46 @@ class _Search:
         self, first: int, stop: int, ranges: list[tuple[_Cost, int, int, list[_Cost]]]
     ) -> None:
         """Keeps the best path of a range of starts if it is closed, else the range, to be cut."""
-        parts, choices = self._program(first, stop)
+        left, width = self._window(first, stop)
+        self.programs += 1
+        parts, choices, crossings = decide_range(
+            self.p,
+            self.columns,
+            (first, stop - first),
+            self.weights,
+            self.limits,
+            self.bars,
+            (left, width),
+            self.charge,
+            NOTHING if self.corridor is None else self.corridor.wanted,
+        )
+        if self.corridor is not None:
+            self.corridor.take(crossings)
         costs = [_Cost(one, self.weights) for one in parts]
         start = 0
         for c in range(1, len(costs)):
             start = c if costs[c] < costs[start] else start
-        steps, end = _follow_around(choices, start)
+        if costs[start].parts[0] >= NEVER:
+            return
+        steps, end = follow_around(choices, left, first + start)
+        end -= first
         landed = end - self.columns.shape[1]
         if landed == start:
             if self._is_open(costs[start]):
                 self.best = costs[start], first + start, steps
             return
-        if self.best is None:
+        if self.best is None and self.corridor is not None:
             self._search_range(first + start, first + start + 1, ranges)
         if self._is_open(costs[start]):
             cut = first + (start + landed + 1) // 2
             heapq.heappush(ranges, (costs[start], first, cut, costs))
 
-    def _program(self, first: int, stop: int) -> tuple[Floats, npt.NDArray[np.uint8]]:
-        self.programs += 1
-        planarity, nothing, energy = self.limits
-        return _decide_range(
-            self.p,
-            self.columns,
-            first,
-            stop - first,
-            self.weights,
-            planarity,
-            nothing,
-            energy,
-            self.bars,
-        )
+    def _window(self, first: int, stop: int) -> tuple[npt.NDArray[np.int64], int]:
+        """The bridges that a program looks at: all of them until there is a best path."""
+        m, n = len(self.p), self.columns.shape[1]
+        if self.best is None or self.corridor is None or stop - first == n:
+            return whole_window(m, n, first, stop)
+        return self.corridor.window(first, stop, self.best[0].parts)
 
 
 def closed_steps(

@@ -9,7 +9,7 @@ from typing import NoReturn, Protocol
 import numpy as np
 import numpy.typing as npt
 
-from wrinkle_cad.errors import InputError
+from wrinkle_cad.errors import ConstraintError
 
 from .bars import Bars
 from .constraints import Constraints, lean_cosines
@@ -80,7 +80,7 @@ def refuse(constraints: Constraints, p: Floats, q: Floats, search: Search) -> No
         search: the best triangulation under other constraints, and whether it keeps them.
 
     Raises:
-        InputError: one sentence names the fewest constraints that fail together.
+        ConstraintError: one sentence names the fewest constraints that fail together.
     """
     free = search(Constraints())[0]
     parts = constraints.parts(p, q)
@@ -91,12 +91,12 @@ def refuse(constraints: Constraints, p: Floats, q: Floats, search: Search) -> No
             failing = rest
     if len(failing) > 1:
         *first, last = (words for words, _ in failing)
-        raise InputError(
+        raise ConstraintError(
             f"No strip between these rails keeps {'; '.join(first)} and {last}: loosen one of them"
             " or drop it."
         )
     ((words, alone),) = failing
-    raise InputError(_alone(words, alone, free))
+    raise ConstraintError(_alone(words, alone, free))
 
 
 def _joined(parts: list[tuple[str, Constraints]]) -> Constraints:

@@ -16,7 +16,8 @@ from wrinkle_cad.cad.rail.closed_starts import are_closed, started_alike
 from wrinkle_cad.cad.rail.directrix import Directrix
 from wrinkle_cad.cad.rail.joint_samples import mended_between, sampled_alone, sampled_jointly
 from wrinkle_cad.cad.rail.trimming import trimmed
-from wrinkle_cad.strip.curve.polyline import polyline_length
+from wrinkle_cad.errors import ConstraintError
+from wrinkle_cad.strip.curve.polyline import polyline_length, segment_lengths
 from wrinkle_cad.strip.curve.sampling import Samples
 from wrinkle_cad.strip.flat.turning import without_turning_back
 from wrinkle_cad.strip.partners import Pair, Search
@@ -28,6 +29,8 @@ from .ruling_control import RulingControl, control_of
 
 Floats = NDArray[np.float64]
 
+FINER: Final = 3
+"""So often chords are halved before it is said that no strip keeps what is asked."""
 NOTHING_UNUSED: Final = (0.0, 0.0, 0.0, 0.0)
 """A strip that has all of its rails."""
 
@@ -47,15 +50,40 @@ def found_between(p: Directrix, q: Directrix, chosen: StripSettings) -> FoundStr
         q: rail Q.
         chosen: tolerance, objective and the rest.
 
+    Where no strip between the samples keeps what is asked of its rulings, the rails are sampled
+    more finely before that is said.
+
     Raises:
+        ConstraintError: no strip keeps what is asked of its rulings.
         InputError: rails that cross, touch or coincide between their ends, one closed and one open
             rail, or an option that cannot be used.
     """
+    chord = chosen.max_chord
+    for _ in range(0 if p.is_polyline and q.is_polyline else FINER):
+        try:
+            return _found_with(p, q, chosen, chord)
+        except ConstraintError:
+            chord = 0.5 * _longest_chord(p, q, chosen, chord)
+    return _found_with(p, q, chosen, chord)
+
+
+def _longest_chord(
+    p: Directrix, q: Directrix, chosen: StripSettings, max_chord: float | None
+) -> float:
+    alone = sampled_alone(p, q, chosen.tolerance, max_chord)
+    samples = sampled_jointly(p, q, alone, chosen.tolerance)
+    return max(float(segment_lengths(own.points).max(initial=0.0)) for own in samples)
+
+
+def _found_with(
+    p: Directrix, q: Directrix, chosen: StripSettings, max_chord: float | None
+) -> FoundStrip:
+    """The best strip between rails sampled with chords no longer than given."""
     is_closed = are_closed(p, q)
     give_up = checked_give_up(chosen.ends, chosen.give_up)
     rails = started_alike(p, q) if is_closed else (p, q)
     control = control_of(chosen, p, q, closed=is_closed)
-    alone = sampled_alone(*rails, chosen.tolerance, chosen.max_chord)
+    alone = sampled_alone(*rails, chosen.tolerance, max_chord)
     samples = control.marked(rails, sampled_jointly(*rails, alone, chosen.tolerance))
     check_apart(*rails, *samples)
     search = _search(chosen, control)
@@ -144,7 +172,10 @@ def _better(search: Search, jointly: Pair, alone: Pair) -> tuple[Triangulation, 
     more = [len(new.points) - len(old.points) for new, old in zip(jointly, alone, strict=True)]
     if not any(more) or not all(map(_are_chords_kept, jointly, alone)):
         return found, jointly
-    plain = search(alone[0].points, alone[1].points)
+    try:
+        plain = search(alone[0].points, alone[1].points)
+    except ConstraintError:
+        return found, jointly
     is_no_worse = (
         plain.fold_back_count <= found.fold_back_count
         and plain.counted_invalid_count <= found.counted_invalid_count

@@ -61,7 +61,8 @@ def cut_open(
         closed: the best triangulation over all starting bridges, of samples without their ends.
         rails: P and Q, closed and alike.
         samples: of P and of Q, with the first point repeated at the end.
-        cut: ``shortest``: the shortest bridge between two faces, of equal ones the first; ``best``:
+        cut: ``shortest``: the shortest bridge between two faces, not in the middle of a plane if
+            there is another, of equal ones the first; ``best``:
             the bridge between two faces at which the flat strip fits the smallest rectangle without
             covering itself, the shortest of those; or i, j of a bridge that the strip has.
     """
@@ -83,7 +84,9 @@ def _bridge_to_cut(closed: Triangulation, cut: Cut) -> int:
     if not isinstance(cut, str):
         return int(np.flatnonzero((i == cut[0]) & (j == cut[1]))[0])
     lengths = row_lengths(closed.p[i] - closed.q[j])
-    lengths[_is_inside_fan(closed)] += float(lengths.max())
+    longest = float(lengths.max())
+    lengths[closed.bending_at == 0.0] += longest
+    lengths[_is_inside_fan(closed)] += 2.0 * longest
     if cut == "best":
         lengths = _among_best(closed, lengths)
     shortest = float(lengths.min())
