@@ -76,6 +76,26 @@ def test_limits_of_lean_length_and_fold_are_kept() -> None:
     assert flat.counted_invalid_bridges >= sharp.counted_invalid_bridges
 
 
+@pytest.mark.parametrize("lean_deg", [30.0, 45.0, 60.0])
+def test_a_limit_of_lean_takes_long_fans_away_and_says_what_that_costs(lean_deg: float) -> None:
+    """A rail that winds around the other: a plane and a cone, or a sheet that must give."""
+    t = np.linspace(0.0, 4.0, 60)
+    f = 1.2 * (t / 4.0) ** 2
+    p = Line((0, 0, 0), (40, 0, 0))
+    q = Spline(*zip(10 * t, 10 * np.sin(f), 10 * np.cos(f), strict=True))
+    free = WrinkleStrip(p, q, tolerance=0.005)
+    assert free.report.state == "developable"
+    assert free.report.max_twist_deg < 0.01
+    kept = WrinkleStrip(p, q, tolerance=0.005, max_lean_deg=lean_deg)
+    i, j = kept.triangulation.bridges.T
+    cosines = lean_cosines(kept.triangulation.p, kept.triangulation.q)[i, j]
+    assert cosines.min() >= math.cos(math.radians(lean_deg)) - 1e-12
+    assert kept.report.state == "stretched"
+    # Along the steepest ruling the rails' tangents differ by the angle of the winding.
+    assert kept.report.max_twist_deg == pytest.approx(math.degrees(math.atan(0.6)), abs=0.05)
+    assert 3.0 < kept.report.max_strain_percent < 3.7
+
+
 @pytest.mark.parametrize(
     ("options", "message"),
     [

@@ -42,4 +42,4 @@ def cut_at(closed: Triangulation, number: int, *, turns: int = 1) -> Triangulati
         price=closed.price,
         least_bending=closed.least_bending,
     )
-    return replace(found, unused=closed.unused)
+    return replace(found, unused=closed.unused, max_lean=closed.max_lean)

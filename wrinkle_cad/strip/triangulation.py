@@ -111,6 +111,8 @@ class Triangulation:
     samples, of that side thinned to 250; None without a price."""
     is_closed: bool = False
     """Whether the last bridge is the first one again."""
+    max_lean: float | None = None
+    """rad; how far its bridges were allowed to lean; None where any way."""
     first_samples: tuple[int, int] = (0, 0)
     """Which samples of the given rails are the first of `p` and `q`; others than 0 where ends are
     free and rail was given up."""
@@ -274,6 +276,7 @@ def triangulate(
     def best(asked: Constraints) -> tuple[Triangulation, bool]:
         bars = bars_of(asked, p, q, closed=closed)
         found = _measured_way(task, way_of(task, asked, bars), energy, price, least)
+        found = replace(found, max_lean=max_lean)
         return found, is_kept(found, asked, bars)
 
     found, has_all = best(constraints)

@@ -42,7 +42,7 @@ def exact_surface(
     # A closed strip's triangulation is cut open; its rails start where it is cut.
     is_closed = p.is_closed and q.is_closed
     rule = rule_closed_strip if is_closed else rule_strip
-    return rule(*rails, (at_p, at_q))
+    return rule(*rails, (at_p, at_q), triangulation.max_lean)
 
 
 def rail_curve(directrix: Directrix) -> RailCurve:

@@ -20,7 +20,12 @@ SMOOTH_START: Final = 1e-6
 """rad, about; a closed rail whose tangent turns by less where it starts has no corner there."""
 
 
-def rule_closed_strip(p: RailCurve, q: RailCurve, bridges: tuple[Floats, Floats]) -> RuledStrip:
+def rule_closed_strip(
+    p: RailCurve,
+    q: RailCurve,
+    bridges: tuple[Floats, Floats],
+    max_lean: float | None = None,
+) -> RuledStrip:
     """Returns the surface of a closed strip, over one turn; creases count arcs from rails' starts.
 
     Args:
@@ -28,6 +33,7 @@ def rule_closed_strip(p: RailCurve, q: RailCurve, bridges: tuple[Floats, Floats]
         q: the curve Q, likewise, run the same way.
         bridges: (k,) float64 each; parameters of the bridges of one turn, in order, the last one
             a whole interval behind the first on both rails, whatever the interval's end.
+        max_lean: rad; as for ``rule_strip``.
     """
     rails = (p, q)
     starts = [float(at[0]) for at in bridges]
@@ -36,7 +42,7 @@ def rule_closed_strip(p: RailCurve, q: RailCurve, bridges: tuple[Floats, Floats]
         np.concatenate((at, at[1:] + (rail.interval[1] - rail.interval[0])))
         for rail, at in zip(rails, bridges, strict=True)
     ]
-    sheet, spacing = rule_sheet(turns[0], turns[1], (twice[0], twice[1]))
+    sheet, spacing = rule_sheet(turns[0], turns[1], (twice[0], twice[1]), max_lean)
     along = sheet.p_arc + sheet.q_arc
     whole = p.length + q.length
     first = int(np.searchsorted(along, whole / 2.0))

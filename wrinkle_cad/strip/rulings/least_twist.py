@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
 import numpy.typing as npt
+
+from wrinkle_cad.strip.curve.nearest import nearest_on_polyline
 
 from .nodes import Nodes, place_nodes
 from .pairing import corridor, pair_nodes
@@ -75,7 +78,11 @@ def first_spacing(p: RailCurve, q: RailCurve, bridges: tuple[Floats, Floats]) ->
 
 
 def pairing_near(
-    p: RailCurve, q: RailCurve, bridges: tuple[Floats, Floats], spacing: float
+    p: RailCurve,
+    q: RailCurve,
+    bridges: tuple[Floats, Floats],
+    spacing: float,
+    max_lean: float | None = None,
 ) -> Pairing:
     """Returns the pairing of least twist near the bridges of a triangulation.
 
@@ -87,6 +94,7 @@ def pairing_near(
         q: the curve.
         bridges: (k,) float64 each; parameters on P and Q of the bridges, in order.
         spacing: mm between nodes.
+        max_lean: rad; how far a ruling may lean from the shortest crossing.
     """
     arcs = (p.arc_at(bridges[0]), q.arc_at(bridges[1]))
     reach = REACH_PER_BRIDGE * lengths(q.point_at(bridges[1]) - p.point_at(bridges[0]))
@@ -95,30 +103,52 @@ def pairing_near(
         edge = np.maximum(np.concatenate(([0.0], edge)), np.concatenate((edge, [0.0])))
         reach = np.maximum(reach, REACH_PER_EDGE * edge)
     nodes = (place_nodes(p, spacing), place_nodes(q, spacing))
-    found = _paired(nodes, arcs, reach, spacing, BENDING)
+    found = _paired(nodes, arcs, reach, spacing, BENDING, max_lean)
     for _ in range(MOST_ROUNDS):
         last = found
         arcs = _arcs(last)
         ruling = last.q.point[last.pairs[:, 1]] - last.p.point[last.pairs[:, 0]]
-        found = _paired(nodes, arcs, REACH_PER_BRIDGE * lengths(ruling), spacing, BENDING)
+        reach = REACH_PER_BRIDGE * lengths(ruling)
+        found = _paired(nodes, arcs, reach, spacing, BENDING, max_lean)
         if np.array_equal(last.pairs, found.pairs):
             break
     return found
 
 
-def finer_pairing(p: RailCurve, q: RailCurve, coarse: Pairing) -> Pairing:
+def finer_pairing(
+    p: RailCurve, q: RailCurve, coarse: Pairing, max_lean: float | None = None
+) -> Pairing:
     """Returns the pairing of least twist near another one, on a grid that is FINER times finer.
 
     Args:
         p: the curve.
         q: the curve.
         coarse: the other one.
+        max_lean: rad; how far a ruling may lean from the shortest crossing.
     """
     spacing = coarse.spacing / FINER
     arcs = _arcs(coarse)
     reach = np.full(len(arcs[0]), REACH_IN_NODES * coarse.spacing)
     nodes = (place_nodes(p, spacing), place_nodes(q, spacing))
-    return _paired(nodes, arcs, reach, spacing, coarse.bending / BENDING_FINER)
+    return _paired(nodes, arcs, reach, spacing, coarse.bending / BENDING_FINER, max_lean)
+
+
+def _leaning(
+    nodes: tuple[Nodes, Nodes], low: Ints, high: Ints, slope: float, spacing: float
+) -> tuple[Ints, Ints]:
+    """The corridor, no wider at each node of P than rulings may lean to either side of its foot."""
+    p, q = nodes
+    foot = nearest_on_polyline(p.point, q.point)
+    at = q.arc[foot.segment] + foot.share * (q.arc[foot.segment + 1] - q.arc[foot.segment])
+    # Two nodes to either side are kept, so that a way through is left.
+    reach = slope * foot.distance + 2.0 * spacing
+    first = np.searchsorted(q.arc, at - reach)
+    last = np.searchsorted(q.arc, at + reach, side="right") - 1
+    narrow_low, narrow_high = np.maximum(low, first), np.minimum(high, last)
+    narrow_low[0], narrow_high[-1] = 0, len(q.arc) - 1
+    narrow_high = np.maximum.accumulate(narrow_high)
+    narrow_low = np.minimum.accumulate(narrow_low[::-1])[::-1]
+    return narrow_low.astype(np.int64), narrow_high.astype(np.int64)
 
 
 def _arcs(pairing: Pairing) -> tuple[Floats, Floats]:
@@ -131,9 +161,12 @@ def _paired(
     reach: Floats,
     spacing: float,
     bending: float,
+    max_lean: float | None,
 ) -> Pairing:
     p, q = nodes
     low, high = corridor(p.arc, q.arc, *arcs, np.maximum(reach, REACH_IN_NODES * spacing))
+    if max_lean is not None:
+        low, high = _leaning(nodes, low, high, math.tan(max_lean), spacing)
     pairs, ways = pair_nodes(
         p.point, q.point, p.tangent, q.tangent, p.arc, q.arc, low, high, bending
     )

@@ -70,30 +70,42 @@ class RuledStrip:
         return float(self.radius.min(initial=math.inf))
 
 
-def rule_strip(p: RailCurve, q: RailCurve, bridges: tuple[Floats, Floats]) -> RuledStrip:
+def rule_strip(
+    p: RailCurve,
+    q: RailCurve,
+    bridges: tuple[Floats, Floats],
+    max_lean: float | None = None,
+) -> RuledStrip:
     """Returns the surface between two curves that is nearest to developable near a triangulation.
 
     Args:
         p: the curve P.
         q: the curve Q, run the same way.
         bridges: (k,) float64 each; parameters on P and Q of the triangulation's bridges, in order.
+        max_lean: rad; how far a ruling may lean from the shortest crossing; any way when None.
     """
-    sheet, spacing = rule_sheet(p, q, bridges)
+    sheet, spacing = rule_sheet(p, q, bridges, max_lean)
     return ruled_strip_of(sheet, p, q, spacing)
 
 
-def rule_sheet(p: RailCurve, q: RailCurve, bridges: tuple[Floats, Floats]) -> tuple[Sheet, float]:
+def rule_sheet(
+    p: RailCurve,
+    q: RailCurve,
+    bridges: tuple[Floats, Floats],
+    max_lean: float | None = None,
+) -> tuple[Sheet, float]:
     """Returns the tangent planes of that surface, and the mm between the nodes it was found on.
 
     Args:
         p: the curve P.
         q: the curve Q.
         bridges: as for `rule_strip`.
+        max_lean: likewise.
     """
-    pairing = pairing_near(p, q, bridges, first_spacing(p, q, bridges))
+    pairing = pairing_near(p, q, bridges, first_spacing(p, q, bridges), max_lean)
     strain = strain_of(_exact(p, q, pairing)).largest
     for _ in range(MOST_FINER):
-        pairing = finer_pairing(p, q, pairing)
+        pairing = finer_pairing(p, q, pairing, max_lean)
         sheet = _exact(p, q, pairing)
         before, strain = strain, strain_of(sheet).largest
         if abs(strain - before) <= max(STABLE_STRAIN, STABLE_SHARE * strain):
