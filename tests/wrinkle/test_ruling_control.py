@@ -99,7 +99,7 @@ def test_a_limit_of_lean_takes_long_fans_away_and_says_what_that_costs(lean_deg:
 @pytest.mark.parametrize(
     ("options", "message"),
     [
-        ({"max_lean_deg": 5.0}, "keeps max_lean of 5 degrees: the largest lean of the best one"),
+        ({"max_ruling": 17.0}, "keeps max_ruling of 17 mm: the longest ruling of the best one"),
         ({"pinned": [(20.0, 30.0), (40.0, 10.0)]}, "Pinned rulings 1 and 2 cross"),
         ({"pinned": [(500.0, 30.0)]}, r"pinned names a place at 500 mm of rail P, which is 12\d"),
         ({"pinned": [(1.0, 2.0, 3.0)]}, "A pinned ruling has 3 numbers: give two, .*, or six"),
