@@ -8,6 +8,7 @@ of it. Nothing is compared here: whether P and Q are the same curve shows when t
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Final
@@ -92,8 +93,17 @@ def _named_strips(cad_file: CadFile) -> tuple[list[StripInput], list[str]]:
     for name, found in _rails_by_strip(cad_file).items():
         rail_p, rail_q = (_one_rail(cad_file, name, rail, found.get(rail, [])) for rail in RAILS)
         strips.append(StripInput(name or settings.STRIP_NAME, rail_p, rail_q))
-        reasons += [f"P is {rail_p}, by its name", f"Q is {rail_q}, by its name"]
+        reasons += [f"P is {rail_p}, {_by(rail_p)}", f"Q is {rail_q}, {_by(rail_q)}"]
     return strips, reasons
+
+
+def _by(shape: NamedShape) -> str:
+    """Says whose name told the role."""
+    carriers = {"set": "of its set", "group": "of its group", "layer": "of its layer"}
+    of = carriers.get(shape.named_by)
+    if shape.named_by == "representation":
+        of = "of its representation"
+    return "by its name" if of is None else f"by the name {of}"
 
 
 def _rails_by_strip(cad_file: CadFile) -> dict[str, dict[str, list[NamedShape]]]:
@@ -138,12 +148,22 @@ def _only_two_curves(cad_file: CadFile) -> tuple[list[StripInput], list[str]]:
     curves = cad_file.curves()
     if len(curves) != 2:
         raise _wrong_count(cad_file, curves)
-    first, second = curves
+    # Whoever gave both a name meant these, not the order that a program writes them in.
+    names = [_natural(curve.name) for curve in curves]
+    is_named = all(curve.name for curve in curves) and names[0] != names[1]
+    first, second = curves if not is_named or names[0] < names[1] else curves[::-1]
+    order = " by name" if is_named else ""
     reasons = [
-        f"P is {first}, the first of the only two free curves",
-        f"Q is {second}, the second of the only two free curves",
+        f"P is {first}, the first{order} of the only two free curves",
+        f"Q is {second}, the second{order} of the only two free curves",
     ]
     return [StripInput(settings.STRIP_NAME, first, second)], reasons
+
+
+def _natural(name: str) -> list[tuple[int, str]]:
+    """A name as people sort it: Curve 9 before Curve 10."""
+    parts = re.split(r"(\d+)", name.casefold())
+    return [(int(part), "") if part.isdecimal() else (-1, part) for part in parts]
 
 
 def _wrong_count(cad_file: CadFile, curves: Sequence[NamedShape]) -> InputError:

@@ -47,6 +47,8 @@ class Found:
     is_free: bool = True
     """Whether it is part of no other shape."""
     faces: Sequence[FaceStyle] = ()
+    named_by: str = ""
+    is_hidden: bool = False
     """Names and colors of single faces."""
 
 
@@ -116,7 +118,18 @@ def listed(source: Source, found: Sequence[Found], mm_per_unit: float) -> tuple[
         index = len(kept) + 1
         faces = carried_over(item.faces, item.shape, shape)
         kept.append(
-            NamedShape(item.name, index, kind, shape, measure, item.color, item.is_free, faces)
+            NamedShape(
+                item.name,
+                index,
+                kind,
+                shape,
+                measure,
+                item.color,
+                item.is_free,
+                faces,
+                item.named_by,
+                item.is_hidden,
+            )
         )
     return tuple(kept)
 

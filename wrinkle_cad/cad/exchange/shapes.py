@@ -61,6 +61,10 @@ class NamedShape:
     """False for a named face or shell inside a solid or shell that is itself listed."""
     faces: tuple[FaceStyle, ...] = ()
     """Its faces that have names or colors of their own."""
+    named_by: str = ""
+    """What carries the name: ``curve``, ``set``, ``layer``, ``product``, ...; empty if unknown."""
+    is_hidden: bool = False
+    """Whether the file says that it is not shown."""
 
     @property
     def unit(self) -> str:
@@ -77,13 +81,15 @@ class NamedShape:
     @property
     def is_surface(self) -> bool:
         """Whether it can be an upper without being asked for (a solid can when it is chosen)."""
-        return self.kind in SURFACE_KINDS and self.measure > 0.0 and self.is_free
+        is_one = self.kind in SURFACE_KINDS and self.measure > 0.0 and self.is_free
+        return is_one and (not self.is_hidden or has_role(self.name))
 
     def __str__(self) -> str:
         """One candidate in a list: index, name, kind and measure."""
         name = f" '{self.name}'" if self.name else ""
         measure = f" {self.measure:.6g} {self.unit}" if self.unit else ""
-        return f"[{self.index}]{name} {self.kind}{measure}"
+        hidden = " (hidden)" if self.is_hidden else ""
+        return f"[{self.index}]{name} {self.kind}{measure}{hidden}"
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -105,8 +111,12 @@ class CadFile:
         return f"CadFile({self.path.name!r}, {self.format}, {self.unit}, {len(self.shapes)} shapes)"
 
     def curves(self) -> tuple[NamedShape, ...]:
-        """Returns the free edges and wires."""
-        return tuple(shape for shape in self.shapes if shape.is_curve)
+        """Returns the free edges and wires; hidden ones only if their name says their role."""
+        return tuple(
+            shape
+            for shape in self.shapes
+            if shape.is_curve and (not shape.is_hidden or has_role(shape.name))
+        )
 
     def surfaces(self) -> tuple[NamedShape, ...]:
         """Returns the free faces, shells and compounds of faces."""

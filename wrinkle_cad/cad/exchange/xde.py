@@ -33,6 +33,7 @@ from OCP.XCAFDoc import (
     XCAFDoc_ShapeTool,
 )
 
+from wrinkle_cad.cad.exchange.step.names import unmarked
 from wrinkle_cad.cad.kernel.topology import as_face, faces_of
 from wrinkle_cad.cad.kernel.versions import LabelList
 from wrinkle_cad.files.names import one_line
@@ -202,7 +203,7 @@ def _name(label: TDF_Label) -> str:
 
 def proper_name(raw: str) -> str:
     """Returns a name as a person gave it: empty if a program did, repaired, without line ends."""
-    name = one_line(_decoded_twice(raw)).strip()
+    name = one_line(unmarked(_decoded_twice(raw))).strip()
     return "" if _AUTOMATIC.fullmatch(name) else name
 
 

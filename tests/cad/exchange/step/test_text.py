@@ -8,7 +8,7 @@ import pytest
 
 from tests.cad.makers import HEAD, TAIL, UNITS, curves_text
 from wrinkle_cad.cad.exchange.sniff import STEP, Source
-from wrinkle_cad.cad.exchange.step.names import curve_names, decoded
+from wrinkle_cad.cad.exchange.step.names import decoded
 from wrinkle_cad.cad.exchange.step.text import (
     check_step,
     entities,
@@ -144,10 +144,3 @@ def test_why_a_file_has_no_shape(data: str, cause: str) -> None:
 )
 def test_strings_are_decoded(raw: bytes, text: str) -> None:
     assert decoded(raw) == text
-
-
-def test_names_of_single_curves_are_found_in_order() -> None:
-    assert curve_names(curves_text(names=("toe:P", "toe:Q")).encode()) == ["toe:P", "toe:Q"]
-    assert curve_names(curves_text().encode()) == ["", ""]
-    sets = curves_text().replace("#20=GEOMETRIC_CURVE_SET(''", "#20=GEOMETRIC_CURVE_SET('P'")
-    assert curve_names(sets.encode()) == ["P", ""]

@@ -78,6 +78,24 @@ def statements(text: bytes) -> Iterator[bytes]:
             parts.clear()
 
 
+def quoted_statements(text: bytes) -> Iterator[tuple[bytes, list[bytes]]]:
+    """Yields each statement as ``statements`` does, and its strings without their quotes."""
+    parts: list[bytes] = []
+    strings: list[bytes] = []
+    at = 0
+    for token in _TOKEN.finditer(text):
+        parts.append(text[at : token.start()])
+        at = token.end()
+        kind = text[token.start() : token.start() + 1]
+        if kind == b"'":
+            parts.append(b"''")
+            strings.append(text[token.start() + 1 : token.end() - 1])
+        elif kind == b";":
+            yield b"".join(parts).strip(), strings
+            parts.clear()
+            strings = []
+
+
 def entities(text: bytes, *keywords: bytes) -> Statements:
     """Returns the bodies of the entities in which one of the keywords occurs, by their number."""
     wanted = re.compile(rb"\b(?:" + b"|".join(keywords) + rb")\s*\(")
