@@ -2,17 +2,20 @@
 
 from __future__ import annotations
 
+import os
 import signal
 import subprocess
 import sys
 import time
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
 
 from tests.batch.stand_ins import KINDS, job_by_content
-from wrinkle_cad.batch.alone import run_alone
-from wrinkle_cad.errors import InputError
+from wrinkle_cad.batch.alone import answer_alone, run_alone
+from wrinkle_cad.cli.main import main
+from wrinkle_cad.errors import InputError, JobError
 from wrinkle_cad.files.staging import leftovers, open_staging, release_staging
 from wrinkle_cad.job.job import Job
 from wrinkle_cad.job.outcome import JobDone, JobFailed
@@ -93,3 +96,51 @@ def test_a_run_that_is_told_to_end_leaves_no_hidden_folder(
         assert said == "Interrupted: nothing is half-written.\n"
     assert not list(leftovers(tmp_path))
     assert not [path for path in tmp_path.iterdir() if path.name.startswith(".")]
+
+
+def size_of(path: Path) -> int:
+    return path.stat().st_size
+
+
+def crash(path: Path) -> int:
+    os.kill(os.getpid(), signal.SIGSEGV)
+    return 0
+
+
+def refuse(path: Path) -> int:
+    raise InputError(f"{path.name} is not to my taste. Give another one.")
+
+
+def sleep(path: Path) -> int:
+    time.sleep(3600)
+    return 0
+
+
+def test_a_question_about_a_file_is_answered_by_another_process(tmp_path: Path) -> None:
+    odd = tmp_path / ("x" * 240 + "\n.step")
+    odd.write_text("12345")
+    assert answer_alone(odd, size_of) == 5
+
+
+@pytest.mark.parametrize(
+    ("question", "said"),
+    [(crash, "SIGSEGV"), (refuse, "not to my taste"), (sleep, "limit is 1 s")],
+)
+def test_a_question_that_ends_its_process_is_one_sentence(
+    tmp_path: Path, question: Callable[[Path], int], said: str
+) -> None:
+    with pytest.raises(JobError, match=said) as caught:
+        answer_alone(tmp_path / "a.step", question, timeout=1.0 if question is sleep else None)
+    assert len(str(caught.value).splitlines()) == 1
+
+
+@pytest.mark.parametrize("command", ["check", "inspect", "compare"])
+def test_every_command_that_reads_a_file_keeps_its_limits(
+    command: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    arguments = [command, str(EXAMPLE), "--timeout", "0.1"]
+    out = ["-o", str(tmp_path / "out")] if command == "compare" else []
+    assert main([*arguments, *out]) == 1
+    (line,) = capsys.readouterr().err.splitlines()
+    assert "the limit is 0.1 s" in line
+    assert not list(tmp_path.iterdir())

@@ -124,9 +124,9 @@ def test_a_mask_names_the_outputs(bench: Bench) -> None:
     ("flags", "complaint"),
     [
         (("--name", "{size}"), "no field 'size'"),
-        (("--memory", "1"), "at least 2 GiB"),
-        (("--timeout", "0"), "above 0"),
-        (("--workers", "0"), "at least 1"),
+        (("--memory", "1"), "give 2 to 1000000 GiB"),
+        (("--timeout", "0"), "give 0.1 to 10000000 s"),
+        (("--workers", "0"), "from 1 to 1000"),
         (("--ship-bytes",), "needs --scheduler"),
         (("--scheduler", "tcp://x:1", "--timeout", "5"), "cannot be held to it"),
         (("--scheduler", "tcp://x:1", "--memory", "5"), "cannot be held to it"),

@@ -1,6 +1,6 @@
 """Runs damaged STEP files through the real reader in workers, and tells what became of them.
 
-Usage: python -m tests.fuzz.runner --count N --seed S --keep DIR [FOLDER...]
+Usage: python -m tests.fuzz.runner --count N --seed S --keep DIR [--structured] [FOLDER...]
 
 The originals are the examples and the files of the folders; those whose damage crashed a worker,
 hung it or showed a bug are copied to DIR. Exit code 1 when a bug showed.
@@ -22,6 +22,7 @@ from pathlib import Path
 import psutil
 
 from tests.fuzz.mutations import mutate
+from tests.fuzz.structure import restructure
 from wrinkle_cad.batch.folder.conversion import convert
 from wrinkle_cad.batch.folder.events import BatchEvent, FileFinished
 from wrinkle_cad.batch.folder.inputs import find_sources
@@ -86,6 +87,7 @@ def run(
     *,
     timeout_s: float = 60.0,
     workers: int = 2,
+    is_structured: bool = False,
 ) -> tuple[Figures, list[Record]]:
     """Makes damaged files in a folder, runs them all, and judges what came of it."""
     inputs, outputs = folder / "in", folder / "out"
@@ -95,7 +97,16 @@ def run(
     for number in range(count):
         pick = chance.randrange(len(contents))
         name = f"{number:05d}-{sources[pick].stem}.step"
-        (inputs / name).write_bytes(mutate(contents[pick], chance))
+        damaged = (
+            restructure(contents[pick], chance.choice(contents), chance)
+            if is_structured
+            else mutate(contents[pick], chance)
+        )
+        (inputs / name).write_bytes(damaged)
+        settings = sources[pick].parent / "job.toml"
+        if is_structured and settings.is_file():
+            # With its waves an upper is carved and stitched, too.
+            shutil.copy(settings, inputs / f"{Path(name).stem}.job.toml")
     figures = Figures(files=count)
     records: list[Record] = []
 
@@ -156,6 +167,8 @@ def main() -> int:
     parser.add_argument("--workers", type=int, default=2)
     parser.add_argument("--timeout", type=float, default=60.0)
     parser.add_argument("--keep", type=Path)
+    parser.add_argument("--example", default="", help="damage this example only")
+    parser.add_argument("--structured", action="store_true", help="change entities, not bytes")
     given = parser.parse_args()
     with tempfile.TemporaryDirectory() as name:
         figures, records = run(
@@ -163,9 +176,10 @@ def main() -> int:
             given.count,
             given.seed,
             # Files that make a strip go deepest: half of the damage is theirs.
-            weighted(originals([EXAMPLES]), originals(given.folders)),
+            weighted(originals([EXAMPLES / given.example]), originals(given.folders)),
             timeout_s=given.timeout,
             workers=given.workers,
+            is_structured=given.structured,
         )
         sys.stdout.write("\n".join([*figures.bugs, str(figures)]) + "\n")
         if given.keep is not None:

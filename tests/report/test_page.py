@@ -5,6 +5,7 @@ from __future__ import annotations
 import copy
 import json
 import re
+from base64 import b64encode
 from hashlib import sha256
 from importlib.resources import files
 from typing import Any
@@ -289,3 +290,21 @@ def test_of_several_strips_the_worst_gives_the_key_figures(
     assert "Worst wrinkle: vamp wrinkle" in [part.text for part in PageReader(html).all("h2")]
     tiles = [path for path, *_ in shown_numbers(html)][:4]
     assert tiles[0] == "/strips/1/max_strain_percent"
+
+
+def test_the_page_lets_only_its_own_scripts_run(good_view: StripView) -> None:
+    page = PageReader(write_page(summary_of([good_view]), [good_view]))
+    (policy,) = (
+        part.attributes["content"] or ""
+        for part in page.all("meta")
+        if part.attributes.get("http-equiv") == "Content-Security-Policy"
+    )
+    scripts = [part.text for part in page.all("script") if "type" not in part.attributes]
+    digests = [b64encode(sha256(text.encode()).digest()).decode() for text in scripts]
+    assert len(digests) > 3
+    allowed = policy.partition("script-src ")[2].split()
+    assert allowed == [*(f"'sha256-{digest}'" for digest in digests), "blob:"]
+    assert "default-src 'none'" in policy
+    assert page.parts.index(next(p for p in page.parts if p.tag == "meta")) < page.parts.index(
+        page.all("script")[0]
+    )

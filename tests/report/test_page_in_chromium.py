@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import base64
 import io
+import re
 import time
 from collections.abc import Callable
 from pathlib import Path
@@ -40,6 +41,13 @@ def until(holds: Callable[[], Any], what: str) -> Any:
             return value
         time.sleep(0.05)
     raise AssertionError(f"after {PATIENCE} s: {what}")
+
+
+def without_policy(html: str) -> str:
+    """The page for a test that changes or adds a script, which its policy would not let run."""
+    shorter = re.sub(r'<meta http-equiv="Content-Security-Policy"[^>]*>', "", html)
+    assert shorter != html
+    return shorter
 
 
 def canvas(browser: webdriver.Chrome, name: str) -> WebElement:
@@ -147,7 +155,7 @@ def test_without_its_library_only_the_3d_view_is_missing(
     browser: webdriver.Chrome, tmp_path: Path, html: str, working: str, failing: str, reason: str
 ) -> None:
     assert html.count(working) == 1
-    broken = html.replace(working, failing)
+    broken = without_policy(html).replace(working, failing)
     flat = tuple(name for name in VIEWS if name != "space")
     open_page(browser, tmp_path / "old.html", broken, views=flat)
     failure = browser.find_element(By.CSS_SELECTOR, ".stage .failure")
@@ -165,7 +173,7 @@ def test_a_bridge_chosen_before_the_3d_view_starts_is_lit_in_it(
 ) -> None:
     start = "const library = Report.library"
     assert html.count(start) == 1
-    early = html.replace(start, f"Report.select(Report.strips[0], 7); {start}")
+    early = without_policy(html).replace(start, f"Report.select(Report.strips[0], 7); {start}")
     open_page(browser, tmp_path / "early.html", early)
     assert agreed_highlight(browser) == "7"
 
@@ -360,5 +368,15 @@ def test_the_3d_view_is_there_once_the_page_has_loaded(
       dispatchEvent(new Event("beforeprint"));
       window.printed = document.querySelector("canvas.space").dataset.drawn;
     });</script>"""
-    open_page(browser, tmp_path / "printed.html", html.replace("</body>", f"{asked}</body>"))
+    changed = without_policy(html).replace("</body>", f"{asked}</body>")
+    open_page(browser, tmp_path / "printed.html", changed)
     assert browser.execute_script("return window.printed") == "yes"
+
+
+def test_a_script_that_is_not_the_pages_own_does_not_run(
+    browser: webdriver.Chrome, tmp_path: Path, html: str
+) -> None:
+    smuggled = html.replace("</body>", "<script>window.pwned = 1</script></body>")
+    open_page(browser, tmp_path / "smuggled.html", smuggled)
+    assert browser.execute_script("return window.pwned") is None
+    assert any("Content Security Policy" in message for message in errors(browser))

@@ -6,15 +6,22 @@ The process costs about a tenth of a second; what it saves is a program that end
 from __future__ import annotations
 
 import sys
+from collections.abc import Callable
 from dataclasses import replace
+from functools import partial
+from pathlib import Path
+from typing import TypeVar
 
 from wrinkle_cad.batch.executor import make_pool, run_tasks
-from wrinkle_cad.batch.workers.pool import Finished, Phase
+from wrinkle_cad.batch.workers.pool import Finished, Phase, Pool
 from wrinkle_cad.batch.workers.task import JobFunction, Task
+from wrinkle_cad.errors import JobError
 from wrinkle_cad.files.staging import clear_abandoned
 from wrinkle_cad.job.job import Job
 from wrinkle_cad.job.outcome import JobDone, JobFailed, Progress
 from wrinkle_cad.job.workflow import run_job
+
+Answer = TypeVar("Answer")
 
 
 def run_alone(
@@ -48,14 +55,61 @@ def run_alone(
     here = replace(job, input=job.input.absolute(), output_dir=job.output_dir.absolute())
     clear_abandoned(here.output_dir)
     try:
-        for event in run_tasks(pool, iter([(0, Task(job=here, job_function=job_function))])):
+        outcome = _outcome_of(pool, Task(job=here, job_function=job_function), progress)
+        return _as_asked(job, outcome)
+    finally:
+        clear_abandoned(here.output_dir)
+
+
+def answer_alone(
+    path: Path,
+    question: Callable[[Path], Answer],
+    *,
+    timeout: float | None = None,
+    memory: float | None = None,
+) -> Answer:
+    """Calls a function with a file's path in a worker process; on Windows in this one.
+
+    Args:
+        path: the file.
+        question: the function, importable by its name, or a partial of such a one; it only reads.
+        timeout: seconds; 600 when None.
+        memory: GiB of address space, 2 at least; 4 when None.
+
+    Returns:
+        What the function returns.
+
+    Raises:
+        JobError: the function raised, the process crashed or met a limit; a sentence says which.
+        InputError: a limit is out of its range.
+    """
+    if sys.platform == "win32":
+        return question(path)
+    pool = make_pool(executor=None, workers=1, timeout=timeout, memory=memory)
+    # Some file names are no good names for outputs, and there are none.
+    job = Job(input=path.absolute(), name="answer")
+    outcome = _outcome_of(pool, Task(job=job, job_function=partial(_answered, question)), None)
+    if isinstance(outcome, JobFailed):
+        raise JobError(outcome.message)
+    answer: Answer = outcome.summary["answer"]
+    return answer
+
+
+def _answered(
+    question: Callable[[Path], object], job: Job, *, progress: Progress | None = None
+) -> JobDone:
+    return JobDone(job=job, outputs=(), summary={"answer": question(job.input)}, seconds={})
+
+
+def _outcome_of(pool: Pool, task: Task, progress: Progress | None) -> JobDone | JobFailed:
+    try:
+        for event in run_tasks(pool, iter([(0, task)])):
             if isinstance(event, Finished):
-                return _as_asked(job, event.result.outcome)
+                return event.result.outcome
             if isinstance(event, Phase) and progress is not None:
                 progress(event.name, event.done, event.total)
     finally:
         pool.kill()
-        clear_abandoned(here.output_dir)
     raise AssertionError("a pool that is busy finishes its task")
 
 

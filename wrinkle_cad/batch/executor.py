@@ -113,8 +113,10 @@ def make_pool(
             "The limits of worker processes need Linux or macOS. On this system, give run_batch an"
             " executor of your own."
         )
-    if workers is not None and workers < 1:
-        raise InputError(f"workers cannot be {workers}: give at least 1.")
+    most = settings.BATCH_MOST_WORKERS
+    if workers is not None and not 1 <= workers <= most:
+        found = f"{workers}" if abs(workers) < 10**9 else "so large a number"
+        raise InputError(f"--workers cannot be {found}: give a whole number from 1 to {most}.")
     limits = WorkerLimits(
         timeout_s=settings.BATCH_TIMEOUT_S if timeout is None else timeout,
         memory_gib=settings.BATCH_MEMORY_GIB if memory is None else memory,

@@ -126,6 +126,12 @@ def _convert(given: argparse.Namespace, planned: tuple[PlannedJob, ...], folder:
 
 @contextmanager
 def _pool(given: argparse.Namespace) -> Iterator[Pool]:
+    files = (given.tls_ca, given.tls_cert, given.tls_key)
+    if any(files) and (None in files or given.scheduler is None):
+        raise InputError(
+            "--tls-ca, --tls-cert and --tls-key go together, and with --scheduler tls://HOST:PORT:"
+            " give all of them or none."
+        )
     limits = {"workers": given.workers, "timeout": given.timeout, "memory": given.memory}
     if given.scheduler is None:
         if given.ship_bytes:
@@ -140,9 +146,10 @@ def _pool(given: argparse.Namespace) -> Iterator[Pool]:
                 f"--{name} is {value:g} together with --scheduler, and a cluster's workers cannot"
                 " be held to it: set it up there, and leave it out here."
             )
-    from wrinkle_cad.batch.workers.cluster import cluster_executor
+    from wrinkle_cad.batch.workers.cluster import Tls, cluster_executor
 
-    with cluster_executor(given.scheduler) as (executor, in_flight):
+    tls = None if None in files else Tls(ca_file=files[0], cert=files[1], key=files[2])
+    with cluster_executor(given.scheduler, tls) as (executor, in_flight):
         yield make_pool(executor=executor, in_flight=in_flight, **limits)
 
 

@@ -14,6 +14,7 @@ import sys
 import traceback
 from collections.abc import Sequence
 from dataclasses import asdict
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final, get_args
 
@@ -27,7 +28,7 @@ from .signals import ended_in_order
 from .streams import complain, flushed, give_up_stdout, open_streams
 
 if TYPE_CHECKING:
-    from wrinkle_cad.job.outcome import JobDone
+    from wrinkle_cad.job.outcome import JobDone, JobFailed
 
 DONE: Final = 0
 FAILED: Final = 1
@@ -124,6 +125,7 @@ def _add_inspect(commands: Any) -> None:
         inspect.add_argument(flag, metavar="NAME|INDEX", help="as for run: shows what it takes")
     inspect.add_argument("--unit", choices=get_args(settings.Unit))
     inspect.add_argument("--json", action="store_true", help="print one JSON value")
+    add_limit_arguments(inspect)
     _add_debug(inspect)
 
 
@@ -133,6 +135,7 @@ def _add_compare(commands: Any) -> None:
     add_job_arguments(compare)
     compare.add_argument("--name", metavar="STEM", help="stem of the outputs")
     compare.add_argument("input", type=Path, metavar="INPUT", help="STEP, IGES or BREP file")
+    add_limit_arguments(compare)
     _add_debug(compare)
 
 
@@ -144,6 +147,7 @@ def _add_check(commands: Any) -> None:
         "--cut-layer", action="append", default=[], metavar="NAME", help="a layer that is cut"
     )
     check.add_argument("--json", action="store_true", help="print one JSON value")
+    add_limit_arguments(check)
     _add_debug(check)
 
 
@@ -181,17 +185,24 @@ def _run(given: argparse.Namespace) -> int:
     from .screen import progress_on_screen
 
     job = make_job(given.input, job_keywords(given, os.environ), given.job)
-    limits = {"timeout": given.timeout, "memory": given.memory}
     with progress_on_screen(is_wanted=not given.quiet) as progress:
-        outcome = run_alone(job, progress=progress, **limits)
+        outcome = run_alone(job, progress=progress, **_limits(given))
     if isinstance(outcome, JobFailed):
-        if given.debug:
-            print(outcome.trace, file=sys.stderr)
-        complain(f"wrinkle-cad: {printable(outcome.message)}")
-        return FAILED
+        return _failed(given, outcome)
     if not given.quiet:
         _print_done(outcome)
     return FAILED if job_misses_limits(outcome) else DONE
+
+
+def _limits(given: argparse.Namespace) -> dict[str, float | None]:
+    return {"timeout": given.timeout, "memory": given.memory}
+
+
+def _failed(given: argparse.Namespace, outcome: JobFailed) -> int:
+    if given.debug:
+        print(outcome.trace, file=sys.stderr)
+    complain(f"wrinkle-cad: {printable(outcome.message)}")
+    return FAILED
 
 
 def job_misses_limits(outcome: JobDone) -> bool:
@@ -225,11 +236,13 @@ def _batch(given: argparse.Namespace) -> int:
 
 
 def _inspect(given: argparse.Namespace) -> int:
+    from wrinkle_cad.batch.alone import answer_alone
     from wrinkle_cad.job.inspection import inspect_file
 
     from .screen import print_inspection
 
-    inspection = inspect_file(given.input, unit=given.unit, p=given.p, q=given.q, upper=given.upper)
+    question = partial(inspect_file, unit=given.unit, p=given.p, q=given.q, upper=given.upper)
+    inspection = answer_alone(given.input, question, **_limits(given))
     if given.json:
         print(json.dumps(inspection.as_json(), ensure_ascii=False, indent=2))
     else:
@@ -238,24 +251,30 @@ def _inspect(given: argparse.Namespace) -> int:
 
 
 def _compare(given: argparse.Namespace) -> int:
+    from wrinkle_cad.batch.alone import run_alone
     from wrinkle_cad.job.comparison import compare_job
     from wrinkle_cad.job.job import make_job
+    from wrinkle_cad.job.outcome import JobFailed
 
     from .screen import print_comparison
 
     job = make_job(given.input, job_keywords(given, os.environ))
-    summary, outputs = compare_job(job)
-    print_comparison(summary)
-    for path in outputs:
+    outcome = run_alone(job, job_function=compare_job, **_limits(given))
+    if isinstance(outcome, JobFailed):
+        return _failed(given, outcome)
+    print_comparison(outcome.summary)
+    for path in outcome.outputs:
         print(printable(str(path)))
     return DONE
 
 
 def _check(given: argparse.Namespace) -> int:
+    from wrinkle_cad.batch.alone import answer_alone
     from wrinkle_cad.files.names import one_line
     from wrinkle_cad.pattern.check.judging import judge_dxf
 
-    report = judge_dxf(given.input, cut_layers=tuple(given.cut_layer))
+    question = partial(judge_dxf, cut_layers=tuple(given.cut_layer))
+    report = answer_alone(given.input, question, **_limits(given))
     if given.json:
         print(json.dumps({**asdict(report), "is_clean": report.is_clean}, indent=2))
         return DONE if report.is_clean else FAILED

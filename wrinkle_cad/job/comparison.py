@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-from typing import Any, Final
+from typing import Final
 
 from .job import Job
+from .outcome import JobDone, Progress
 from .outputs import outputs_together
 from .parts import rails_of, read_chosen, strip_of
 from .summary import to_json
@@ -13,7 +13,7 @@ from .summary import to_json
 _KINDS: Final = ("compare.json", "compare.html")
 
 
-def compare_job(job: Job) -> tuple[dict[str, Any], tuple[Path, ...]]:
+def compare_job(job: Job, *, progress: Progress | None = None) -> JobDone:
     """Runs LODT+LMBT, GODT+GMBT, GMBT and GMAT on every strip of a file.
 
     Writes NAME.compare.json and NAME.compare.html.
@@ -21,14 +21,17 @@ def compare_job(job: Job) -> tuple[dict[str, Any], tuple[Path, ...]]:
     Args:
         job: the input, which curves to take, tolerance, energy and planarity; the criteria and
             the search are those of the methods.
+        progress: called once, as it begins.
 
     Returns:
-        What the JSON holds, and the files.
+        The files, and what the JSON holds.
 
     Raises:
         InputError: the file or a curve cannot be used.
         ExportError: the files cannot be written.
     """
+    if progress is not None:
+        progress("compare", 0, 1)
     _, chosen = read_chosen(job, _KINDS)
 
     from wrinkle_cad.report.compare import compare, comparison_summary, write_comparison_page
@@ -46,4 +49,5 @@ def compare_job(job: Job) -> tuple[dict[str, Any], tuple[Path, ...]]:
     with outputs_together(job, _KINDS) as paths:
         paths["compare.json"].write_text(to_json(summary), encoding="utf-8")
         paths["compare.html"].write_text(write_comparison_page(summary), encoding="utf-8")
-    return summary, tuple(job.output_dir / f"{job.name}.{kind}" for kind in _KINDS)
+    outputs = tuple(job.output_dir / f"{job.name}.{kind}" for kind in _KINDS)
+    return JobDone(job=job, outputs=outputs, summary=summary)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from pathlib import Path
+from typing import Any
 
 import dask
 import pytest
@@ -16,7 +17,7 @@ from wrinkle_cad.batch.folder.conversion import ConversionOptions, convert
 from wrinkle_cad.batch.folder.events import BatchSummary, FileFinished
 from wrinkle_cad.batch.folder.inputs import find_sources
 from wrinkle_cad.batch.folder.plan import plan_batch
-from wrinkle_cad.batch.workers.cluster import cluster_executor
+from wrinkle_cad.batch.workers.cluster import Tls, cluster_executor
 from wrinkle_cad.errors import InputError
 
 
@@ -109,5 +110,42 @@ def test_a_missing_extra_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
     with (
         pytest.raises(InputError, match=r"install wrinkle-cad\[cluster\]"),
         cluster_executor("tcp://127.0.0.1:9"),
+    ):
+        pass
+
+
+def certificates(folder: Path) -> Tls:
+    paths = [folder / name for name in ("ca.pem", "cert.pem", "key.pem")]
+    for path in paths:
+        path.write_text("pem")
+    return Tls(ca_file=paths[0], cert=paths[1], key=paths[2])
+
+
+def test_certificates_reach_the_connection(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    asked: list[Any] = []
+
+    def refuse(address: str, *, security: Any, **_: object) -> None:
+        asked.append(security)
+        raise OSError("no such host")
+
+    monkeypatch.setattr("distributed.Client", refuse)
+    tls = certificates(tmp_path)
+    with pytest.raises(InputError), cluster_executor("tls://127.0.0.1:9", tls):
+        pass
+    (security,) = asked
+    assert security.require_encryption
+    assert security.tls_ca_file == str(tls.ca_file)
+    assert security.get_tls_config_for_role("client")["cert"] == str(tls.cert)
+    assert security.get_tls_config_for_role("client")["key"] == str(tls.key)
+
+
+def test_certificates_that_are_not_there_or_not_used_are_told(tmp_path: Path) -> None:
+    tls = certificates(tmp_path)
+    with pytest.raises(InputError, match="no tls://"), cluster_executor("tcp://127.0.0.1:9", tls):
+        pass
+    tls.key.unlink()
+    with (
+        pytest.raises(InputError, match=r"There is no file .*key\.pem"),
+        cluster_executor("tls://127.0.0.1:9", tls),
     ):
         pass

@@ -33,15 +33,18 @@ class WorkerLimits:
         """Checks the limits.
 
         Raises:
-            InputError: a timeout that is not positive, too little memory.
+            InputError: one is out of its range.
         """
-        if self.timeout_s is not None and not 0 < self.timeout_s < float("inf"):
-            raise InputError(f"--timeout cannot be {self.timeout_s:g} s: give seconds above 0.")
-        least = settings.BATCH_LEAST_MEMORY_GIB
-        if self.memory_gib is not None and not least <= self.memory_gib < float("inf"):
+        shortest, longest = settings.BATCH_TIMEOUTS_S
+        if self.timeout_s is not None and not shortest <= self.timeout_s <= longest:
             raise InputError(
-                f"--memory cannot be {self.memory_gib:g} GiB: give at least {least:g} GiB. The CAD"
-                " kernel needs more than half of that before it reads a file."
+                f"--timeout cannot be {self.timeout_s:g} s: give {shortest:g} to {longest:.0f} s."
+            )
+        least, most = settings.BATCH_LEAST_MEMORY_GIB, settings.BATCH_LARGEST_MEMORY_GIB
+        if self.memory_gib is not None and not least <= self.memory_gib <= most:
+            raise InputError(
+                f"--memory cannot be {self.memory_gib:g} GiB: give {least:g} to {most:.0f} GiB. The"
+                " CAD kernel needs more than half of the least before it reads a file."
             )
 
     @property
