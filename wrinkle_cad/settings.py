@@ -265,15 +265,6 @@ BATCH_MEMORY_GIB: Final = 4.0
 BATCH_LEAST_MEMORY_GIB: Final = 2.0
 """GiB; the CAD kernel and numba alone map 1.2, and fail in odd ways just above that."""
 
-BATCH_LARGEST_MEMORY_GIB: Final = 1e6
-"""GiB; more than any machine has, and still a number of bytes that systems take."""
-
-BATCH_TIMEOUTS_S: Final = (0.1, 1e7)
-"""s; the shortest and the longest time that a file may be given: 16 weeks."""
-
-BATCH_MOST_WORKERS: Final = 1000
-"""More processes at a time are surely a slip of the pen."""
-
 BATCH_MEMORY_HIT: Final = 0.85
 """A worker that crashes with more than this share of its memory mapped ran into the limit."""
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-from build123d import Circle, Edge, Face, Line, Pos, Spline
+from build123d import Edge, Face, Line, Pos, Spline
 from numpy.typing import NDArray
 
 from tests.cad.strips import edge_of
@@ -72,21 +72,22 @@ def random_pair(seed: int) -> tuple[Any, Any]:
     return first, random_rail(rng, width)
 
 
+def smooth_height(x: Floats, y: Floats) -> Floats:
+    """How high an upper that is not wild stands over the plane, about."""
+    height: Floats = 15.0 * np.sin(x / 60.0) * np.cos(y / 50.0)
+    return height
+
+
 def random_upper(seed: int) -> Face:
     """A face of one B-spline, as smooth or as wild as the seed has it."""
     rng = np.random.default_rng(seed)
     rows, columns = (int(number) for number in rng.integers(4, 9, 2))
     wildness = float(rng.choice((0.0, 1.0, 5.0, 20.0)))
     x, y = np.meshgrid(np.linspace(0.0, 150.0, columns), np.linspace(0.0, 120.0, rows))
-    z = 15.0 * np.sin(x / 60.0) * np.cos(y / 50.0) + wildness * rng.normal(size=x.shape)
+    z = smooth_height(x, y) + wildness * rng.normal(size=x.shape)
     return Face.make_surface_from_array_of_points(
         [
             [(float(a), float(b), float(c)) for a, b, c in zip(*row, strict=True)]
             for row in zip(x, y, z, strict=True)
         ]
     )
-
-
-def disc(radius: float) -> Face:
-    """A flat round upper."""
-    return Circle(radius).face()

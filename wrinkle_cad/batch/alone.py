@@ -98,6 +98,8 @@ def answer_alone(
 def _answered(
     question: Callable[[Path], object], job: Job, *, progress: Progress | None = None
 ) -> JobDone:
+    if progress is not None:
+        progress("read", 0, 1)
     return JobDone(job=job, outputs=(), summary={"answer": question(job.input)}, seconds={})
 
 

@@ -23,6 +23,10 @@ from wrinkle_cad.job.job import Job
 from wrinkle_cad.job.outcome import JobDone, JobFailed
 
 
+_MOST_WORKERS: Final = 1000
+"""More processes at a time are surely a slip of the pen."""
+
+
 class _End:
     """No more tasks."""
 
@@ -113,10 +117,11 @@ def make_pool(
             "The limits of worker processes need Linux or macOS. On this system, give run_batch an"
             " executor of your own."
         )
-    most = settings.BATCH_MOST_WORKERS
-    if workers is not None and not 1 <= workers <= most:
+    if workers is not None and not 1 <= workers <= _MOST_WORKERS:
         found = f"{workers}" if abs(workers) < 10**9 else "so large a number"
-        raise InputError(f"--workers cannot be {found}: give a whole number from 1 to {most}.")
+        raise InputError(
+            f"--workers cannot be {found}: give a whole number from 1 to {_MOST_WORKERS}."
+        )
     limits = WorkerLimits(
         timeout_s=settings.BATCH_TIMEOUT_S if timeout is None else timeout,
         memory_gib=settings.BATCH_MEMORY_GIB if memory is None else memory,

@@ -186,7 +186,7 @@ def _run(given: argparse.Namespace) -> int:
 
     job = make_job(given.input, job_keywords(given, os.environ), given.job)
     with progress_on_screen(is_wanted=not given.quiet) as progress:
-        outcome = run_alone(job, progress=progress, **_limits(given))
+        outcome = run_alone(job, progress=progress, timeout=given.timeout, memory=given.memory)
     if isinstance(outcome, JobFailed):
         return _failed(given, outcome)
     if not given.quiet:
@@ -259,7 +259,7 @@ def _compare(given: argparse.Namespace) -> int:
     from .screen import print_comparison
 
     job = make_job(given.input, job_keywords(given, os.environ))
-    outcome = run_alone(job, job_function=compare_job, **_limits(given))
+    outcome = run_alone(job, job_function=compare_job, timeout=given.timeout, memory=given.memory)
     if isinstance(outcome, JobFailed):
         return _failed(given, outcome)
     print_comparison(outcome.summary)

@@ -15,6 +15,10 @@ from wrinkle_cad.job.outcome import JobFailed
 from .worker import WorkerFault
 
 GIB: Final = 1 << 30
+_TIMEOUTS_S: Final = (0.1, 1e7)
+"""s; the shortest and the longest time that a file may be given: 16 weeks."""
+_LARGEST_MEMORY_GIB: Final = 1e6
+"""GiB; more than any machine has, and still a number of bytes that systems take."""
 _MEMORY_SIGNALS: Final = (signal.SIGSEGV, signal.SIGABRT)
 MEMORY_ERRORS: Final = ("MemoryError", "_ArrayMemoryError")
 """Names of the errors that Python and numpy raise when they are refused memory."""
@@ -35,12 +39,12 @@ class WorkerLimits:
         Raises:
             InputError: one is out of its range.
         """
-        shortest, longest = settings.BATCH_TIMEOUTS_S
+        shortest, longest = _TIMEOUTS_S
         if self.timeout_s is not None and not shortest <= self.timeout_s <= longest:
             raise InputError(
                 f"--timeout cannot be {self.timeout_s:g} s: give {shortest:g} to {longest:.0f} s."
             )
-        least, most = settings.BATCH_LEAST_MEMORY_GIB, settings.BATCH_LARGEST_MEMORY_GIB
+        least, most = settings.BATCH_LEAST_MEMORY_GIB, _LARGEST_MEMORY_GIB
         if self.memory_gib is not None and not least <= self.memory_gib <= most:
             raise InputError(
                 f"--memory cannot be {self.memory_gib:g} GiB: give {least:g} to {most:.0f} GiB. The"
