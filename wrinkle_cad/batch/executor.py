@@ -22,7 +22,6 @@ from wrinkle_cad.files.staging import discard_staging, open_staging
 from wrinkle_cad.job.job import Job
 from wrinkle_cad.job.outcome import JobDone, JobFailed
 
-
 _MOST_WORKERS: Final = 1000
 """More processes at a time are surely a slip of the pen."""
 
