@@ -17,6 +17,7 @@ from wrinkle_cad.files.names import split_name
 from wrinkle_cad.files.toml import read_toml
 from wrinkle_cad.options.checking import check_known, check_options
 from wrinkle_cad.options.option import option, options_of
+from wrinkle_cad.options.signature import knows_its_options
 from wrinkle_cad.pattern.piece.options import PieceOptions, check_piece
 from wrinkle_cad.wrinkle.options import StripSettings
 
@@ -78,6 +79,9 @@ class Job(
         _check_name(self.name)
         check_waves(self, JobError)
         check_piece(self, JobError)
+
+
+setattr(Job, "__init__", knows_its_options(Job.__init__, "Job"))  # noqa: B010 - mypy's wish
 
 
 def make_job(

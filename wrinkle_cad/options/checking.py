@@ -83,6 +83,26 @@ def check_known(
             raise error(f"{source} has no option {_shown(name)}: {advice}")
 
 
+def check_numbers(**named: object) -> None:
+    """Raises an ``InputError`` that names the first argument that is no number.
+
+    Args:
+        named: arguments by their names; a tuple or list holds one number for each rail, and what
+            can be called is no number's business.
+
+    Example:
+        >>> check_numbers(waves="3")
+        Traceback (most recent call last):
+        wrinkle_cad.errors.InputError: waves cannot be '3': give a number.
+    """
+    for name, value in named.items():
+        if callable(value):
+            continue
+        parts = value if isinstance(value, tuple | list) else (value,)
+        if not parts or not all(_is_number(part) or callable(part) for part in parts):
+            raise InputError(f"{name} cannot be {_shown(value)}: give a number.")
+
+
 class _UnfitError(Exception):
     """A value that an option cannot have."""
 

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import functools
 import inspect
 import textwrap
 from collections.abc import Callable
 from typing import Any, Concatenate, ParamSpec, TypeVar
 
+from .checking import check_known
 from .option import options_of
 
 Parameters = ParamSpec("Parameters")
@@ -48,6 +50,34 @@ def takes_options_of(
         return described  # type: ignore[no-any-return]
 
     return decorate
+
+
+def knows_its_options(
+    function: Callable[Parameters, Result], name: str = ""
+) -> Callable[Parameters, Result]:
+    """Returns a function that refuses unknown keywords with the nearest ones that it knows.
+
+    Args:
+        function: what is called.
+        name: what messages call it; its own name when empty.
+
+    Raises:
+        InputError: when called, a keyword is not known.
+
+    Example:
+        >>> from wrinkle_cad import carve
+        >>> carve(None, None, None, margn=2)
+        Traceback (most recent call last):
+        wrinkle_cad.errors.InputError: carve() has no option 'margn': did you mean margin?
+    """
+    known = list(inspect.signature(function).parameters)
+
+    @functools.wraps(function)
+    def checked(*args: Parameters.args, **kwargs: Parameters.kwargs) -> Result:
+        check_known(kwargs, known, f"{name or function.__name__}()")
+        return function(*args, **kwargs)
+
+    return checked
 
 
 def _list(arguments_class: Any) -> str:

@@ -70,6 +70,13 @@ class Directrix:
     findings: tuple[Finding, ...] = ()
     """What was left out of what it was made from, or closed."""
 
+    def __repr__(self) -> str:
+        count = len(self.pieces)
+        return (
+            f"Directrix({self.name!r}, {self.length:.6g} mm,"
+            f" {count} {'edge' if count == 1 else 'edges'})"
+        )
+
     @property
     def is_point(self) -> bool:
         """Whether it has no length: the strip to it is a cone."""

@@ -17,6 +17,8 @@ from wrinkle_cad.cad.kernel.topology import faces_of, free_edges, make_compound,
 from wrinkle_cad.cad.rail.closed_starts import are_closed
 from wrinkle_cad.cad.rail.directrix import Directrix, make_directrix, orient_alike
 from wrinkle_cad.errors import CadError, InputError
+from wrinkle_cad.options.checking import check_numbers
+from wrinkle_cad.options.signature import knows_its_options
 
 from .opening import CarveRequest, Opening
 from .opening_outline import Rail
@@ -32,6 +34,7 @@ Floats = NDArray[np.float64]
 STEP = "carve the upper"
 
 
+@knows_its_options
 def carve(
     upper: object,
     p: object,
@@ -237,6 +240,7 @@ def _joined_upper(shape: TopoDS_Shape, join: float) -> tuple[TopoDS_Shape, list[
 
 
 def _check_numbers(margin: float, fade: float, limit: float, join: float) -> None:
+    check_numbers(margin=margin, fade=fade, limit=limit, join=join)
     for name, value, low, high in (
         ("margin", margin, 0.0, np.inf),
         ("fade", fade, settings.FADE_MIN, 0.5),

@@ -16,6 +16,8 @@ from numpy.typing import NDArray
 from wrinkle_cad import settings
 from wrinkle_cad.cad.rail.directrix import Directrix, make_directrix
 from wrinkle_cad.errors import InputError
+from wrinkle_cad.options.checking import check_numbers
+from wrinkle_cad.options.signature import knows_its_options
 from wrinkle_cad.strip.portable import cos, sin
 
 from .opening import Opening
@@ -32,6 +34,7 @@ Pair = float | tuple[float, float]
 Shift = float | Wave | tuple[float | Wave, float | Wave]
 
 
+@knows_its_options
 def wrinkle_profiles(
     opening: Opening,
     *,
@@ -101,6 +104,11 @@ def profile_curves(
     across: Shift = 0.0,
 ) -> tuple[Directrix, Directrix]:
     """Returns the profiles of ``wrinkle_profiles`` as directrices."""
+    if not isinstance(opening, Opening):
+        raise InputError(
+            f"The opening cannot be a {type(opening).__name__}: pass what carve() returned."
+        )
+    check_numbers(waves=waves, height=height, phase_deg=phase_deg, fade=fade, across=across)
     if not settings.FADE_MIN <= fade <= 0.5:
         raise InputError(f"fade is {fade:g}: {settings.FADE_MIN:g} to 0.5 is allowed.")
     if side not in get_args(settings.WaveSide):

@@ -17,6 +17,8 @@ from wrinkle_cad.cad.kernel.measures import check_valid, face_areas, tolerance_o
 from wrinkle_cad.cad.kernel.topology import faces_of
 from wrinkle_cad.cad.rail.directrix import Directrix
 from wrinkle_cad.errors import CadError, InputError
+from wrinkle_cad.options.checking import check_numbers
+from wrinkle_cad.options.signature import knows_its_options
 from wrinkle_cad.strip.portable import norm
 
 from .bands import Band, StripLike, check_beside, make_band
@@ -62,6 +64,13 @@ class StitchReport:
     bands: tuple[Band, ...]
     """The bands, in the order of the openings, P before Q."""
 
+    def __repr__(self) -> str:
+        state = "valid" if self.is_valid else "not valid"
+        return (
+            f"StitchReport({self.face_count} faces, {self.free_edges_after} free edges,"
+            f" {self.area_mm2:.6g} mm2, {state})"
+        )
+
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Stitched:
@@ -99,6 +108,7 @@ class Stitched:
         return cast("Shell", alike(self.shell_shape, self.source, "upper"))
 
 
+@knows_its_options
 def stitch(
     openings: Opening | Sequence[Opening],
     strips: StripLike | Sequence[StripLike],
@@ -132,8 +142,10 @@ def stitch(
         >>> [name for name, _ in stitched.parts], stitched.report.is_valid
         (['body', 'wrinkle', 'wrinkle band P', 'wrinkle band Q'], True)
     """
-    given = [openings] if isinstance(openings, Opening) else list(openings)
+    check_numbers(tolerance=tolerance)
+    given = list(openings) if isinstance(openings, Sequence) else [openings]
     wanted = list(strips) if isinstance(strips, Sequence) else [strips]
+    _check_kinds(given, wanted)
     if len(given) != len(wanted) or not given:
         raise InputError(
             f"{len(given)} openings and {len(wanted)} strips cannot be stitched: pass lists of"
@@ -143,6 +155,26 @@ def stitch(
     faces, parts, bands = _all_faces(chained, wanted, tolerance)
     sewn = sew(faces, settings.SEWING)
     return _stitched(given, chained, sewn, parts, bands)
+
+
+def _check_kinds(openings: Sequence[object], strips: Sequence[object]) -> None:
+    """Refuses what is no opening or no strip, and the two in the wrong order."""
+    if any(isinstance(strip, Opening) for strip in strips):
+        raise InputError(
+            "stitch() was given an opening in place of a strip: pass the opening first and the"
+            " strip second, stitch(opening, strip)."
+        )
+    for opening in openings:
+        if not isinstance(opening, Opening):
+            raise InputError(
+                f"An opening cannot be a {type(opening).__name__}: pass what carve() returned."
+            )
+    for strip in strips:
+        if not hasattr(strip, "topods_shell"):
+            raise InputError(
+                f"A strip cannot be a {type(strip).__name__}: pass a WrinkleStrip between the"
+                " opening's profiles."
+            )
 
 
 def _carved_together(openings: Sequence[Opening], strips: Sequence[StripLike]) -> list[Opening]:

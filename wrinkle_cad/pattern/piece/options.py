@@ -276,6 +276,16 @@ class PieceSettings(PieceOptions):
         ),
     )
 
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        for name in ("notches_p", "notches_q"):
+            rule = getattr(self, name)
+            if rule is not None and not isinstance(rule, NotchRule):
+                raise InputError(
+                    f"{name} cannot be {rule!r}: give a NotchRule, such as NotchRule(count=5), or"
+                    f" the option notches for both rails and notch_at_{name[-1]} for places."
+                )
+
     @property
     def notch_rules(self) -> tuple[NotchRule, NotchRule]:
         """Where the notches of P and of Q stand."""

@@ -127,6 +127,10 @@ class PatternPiece:
     findings: tuple[Finding, ...] = ()
     """What was noticed while making it."""
 
+    def __repr__(self) -> str:
+        counts = f"{len(self.cut.points)} corners, {len(self.notches)} notches"
+        return f"PatternPiece({self.name[:60]!r}, {counts})"
+
     @property
     def cut_line(self) -> Floats:
         """(k, 2) mm, the outline to be cut, closed without a repeated vertex."""

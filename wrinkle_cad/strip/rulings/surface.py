@@ -44,6 +44,9 @@ class RuledStrip:
     radius: Floats
     """(k - 1,) float64, mm; smallest bend radius in each interval between rulings; inf if flat."""
 
+    def __repr__(self) -> str:
+        return f"RuledStrip({len(self.pieces)} pieces, {len(self.creases)} creases)"
+
     @property
     def developable_share(self) -> float:
         """Share, 0 to 1, of both rails' length that pieces other than gaps cover."""
