@@ -79,6 +79,20 @@ def limits_missed_job(job: Job, *, progress: Progress | None = None) -> JobDone 
     return replace(outcome, missed_limits=("fold - 9 deg - 8 deg",))
 
 
+def stranger_job(job: Job, *, progress: Progress | None = None) -> JobDone | JobFailed:
+    """Writes its files and tells the figures that the input names, in forms of its own."""
+    outcome = job_by_content(job, progress=progress)
+    assert isinstance(outcome, JobDone)
+    strips: dict[str, object] = {
+        "number": 5,
+        "words": [{"interior_bridges": "many"}],
+        "state": [{"state": "splendid"}],
+        "creases": [{"creases": [{}]}],
+        "shares": [{"developable_share": None}],
+    }
+    return replace(outcome, summary={"strips": strips[job.input.read_text()]})
+
+
 def _write(job: Job, kind: str) -> Path:
     path = job.output_dir / f"{job.name}.{kind}"
     path.write_text(f"{kind} of {job.input.name}: {job.input.read_text()} END\n" * 50)

@@ -17,6 +17,7 @@ from typing import NamedTuple
 import pytest
 
 from tests.batch.conftest import Bench
+from tests.batch.stand_ins import stranger_job
 from wrinkle_cad.batch.folder.events import FileFinished
 
 LINUX_ONLY = pytest.mark.skipif(not sys.platform.startswith("linux"), reason="devices of Linux")
@@ -201,6 +202,18 @@ def test_what_has_an_outputs_name_is_kept(bench: Bench, tmp_path: Path, name: st
         after = fingerprint(bench.outputs)
         assert {path: after[path] for path in before} == before
     assert not list(bench.outputs.glob(".wrinkle_cad-*"))
+
+
+def test_figures_of_no_known_form_cost_the_file_that_they_are_about(bench: Bench) -> None:
+    words = ("number", "words", "state", "creases", "shares")
+    bench.put(**{word: word for word in words})
+    summary = bench.run(job_function=stranger_job)
+    assert (summary.done, summary.failed) == (0, len(words))
+    for event in bench.events:
+        if isinstance(event, FileFinished):
+            assert "figures" in event.record.message
+            assert len(event.record.message.splitlines()) == 1
+    assert not bench.files()
 
 
 def test_a_gzip_bomb_is_one_sentence(tmp_path: Path) -> None:

@@ -11,7 +11,7 @@ from typing import Any, Final
 
 from wrinkle_cad.batch.workers.task import TaskResult
 from wrinkle_cad.errors import JobError, WrinkleError
-from wrinkle_cad.files.names import printable
+from wrinkle_cad.files.names import error_words, printable
 from wrinkle_cad.files.staging import (
     commit_staging,
     discard_staging,
@@ -147,15 +147,22 @@ def figures_of(summary: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def _done_record(base: Record, result: TaskResult, outcome: JobDone) -> Record:
-    return replace(
-        base,
-        outcome="done",
-        outputs=result.outputs,
-        figures={**base.figures, **figures_of(outcome.summary)},
-        missed_limits=tuple(printable(line) for line in outcome.missed_limits),
-        seconds=dict(outcome.seconds),
-        finished=_now(),
-    )
+    try:
+        return replace(
+            base,
+            outcome="done",
+            outputs=result.outputs,
+            figures={**base.figures, **figures_of(outcome.summary)},
+            missed_limits=tuple(printable(line) for line in outcome.missed_limits),
+            seconds=dict(outcome.seconds),
+            finished=_now(),
+        )
+    except (TypeError, ValueError, LookupError, AttributeError, ArithmeticError) as error:
+        # What came back from a worker may be a stranger's, and of any form.
+        raise JobError(
+            f"The worker's figures of {printable(base.key)} are of no known form"
+            f" ({error_words(error)}). Look at who runs the workers, and at their versions."
+        ) from error
 
 
 def _check_names(job: Job, result: TaskResult) -> None:
