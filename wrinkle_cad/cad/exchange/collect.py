@@ -47,9 +47,11 @@ class Found:
     is_free: bool = True
     """Whether it is part of no other shape."""
     faces: Sequence[FaceStyle] = ()
-    named_by: str = ""
-    is_hidden: bool = False
     """Names and colors of single faces."""
+    named_by: str = ""
+    """What carries the name: ``curve``, ``set``, ``layer``, ``product``, ..."""
+    is_hidden: bool = False
+    """Whether the file says that it is not shown."""
 
 
 def take_apart(
