@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
+from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
@@ -27,6 +28,13 @@ from .feet import FOOT_STEPS, LOOKED_AT, foot_on, settled_foot
 from .trimming import part_of
 
 Floats = NDArray[np.float64]
+
+PAIR_STEPS: Final = 100
+"""Steps to the nearest places of two rails; where these touch three ways each is worth a third."""
+BEND_STEP: Final = 1e-3
+"""The bend of an edge at its end is taken over this share of it ..."""
+SAME_BEND: Final = 0.05
+"""... and goes on in the next one if it differs by no more than this share."""
 
 
 def are_closed(p: Directrix, q: Directrix) -> bool:
@@ -63,7 +71,58 @@ def started_alike(p: Directrix, q: Directrix) -> tuple[Directrix, Directrix]:
         q: closed rail Q, which runs as P does.
     """
     p_start, q_start = _starts(p, q)
-    return started_at(p, p_start), started_at(q, q_start)
+    return _rejoined(started_at(p, p_start)), _rejoined(started_at(q, q_start))
+
+
+def _rejoined(rail: Directrix) -> Directrix:
+    """The rail without the joints where it goes on as if there were none: a start that was left.
+
+    Edges of one degree become one where velocity and bend go on; straight ones lose the joint.
+    """
+    if rail.is_polyline or len(rail.pieces) == 1:
+        return rail
+    pieces = [rail.pieces[0]]
+    for piece in rail.pieces[1:]:
+        if _goes_on(pieces[-1], piece):
+            pieces[-1] = _one_of(pieces[-1], piece)
+        else:
+            pieces.append(piece)
+    if len(pieces) == len(rail.pieces):
+        return rail
+    joints = {float(piece.knots[0]) for piece in rail.pieces[1:]}
+    gone = joints - {float(piece.knots[0]) for piece in pieces[1:]}
+    return replace(
+        rail,
+        pieces=tuple(pieces),
+        curves=tuple(
+            make_curve(piece.poles, piece.knots, piece.multiplicities, piece.degree, piece.weights)
+            for piece in pieces
+        ),
+        breaks=tuple(mark for mark in rail.breaks if mark not in gone),
+    )
+
+
+def _goes_on(before: PoleCurve, after: PoleCurve) -> bool:
+    if before.degree != after.degree:
+        return False
+    joint = float(after.knots[0])
+    step = BEND_STEP * min(joint - float(before.knots[0]), float(after.knots[-1]) - joint)
+    at = np.array([joint])
+    v_before, v_after = before.velocity_at(at, "left"), after.velocity_at(at, "right")
+    speed = float(row_lengths(v_before)[0])
+    if float(row_lengths(v_after - v_before)[0]) > settings.RAIL_JUMP * speed:
+        return False
+    bends = (v_before - before.velocity_at(at - step), after.velocity_at(at + step) - v_after)
+    apart = float(row_lengths(bends[1] - bends[0])[0])
+    return apart <= SAME_BEND * float(row_lengths(bends[0])[0]) + settings.RAIL_JUMP * speed
+
+
+def _one_of(before: PoleCurve, after: PoleCurve) -> PoleCurve:
+    if before.degree > 1 or len(before.poles) > 2 or len(after.poles) > 2:
+        return _joined(before, after)
+    ends = np.array([before.knots[0], after.knots[-1]])
+    poles = np.array([before.poles[0], after.poles[-1]])
+    return PoleCurve(1, ends, np.array([2, 2]), poles, None)
 
 
 def _starts(p: Directrix, q: Directrix) -> tuple[float, float]:
@@ -124,7 +183,45 @@ def _nearest_places(p: Directrix, q: Directrix) -> tuple[float, float]:
         at_q = settled_foot(p.point_at(np.array([at_p]))[0], q, at_q)
         if (at_p, at_q) == before:
             break
-    return at_p, at_q
+    return _squared_pair(p, q, at_p, at_q)
+
+
+def _squared_pair(p: Directrix, q: Directrix, at_p: float, at_q: float) -> tuple[float, float]:
+    """The places where the way between the rails stands square on both: Newton's method.
+
+    Where rails run side by side feet come nearer and nearer, and never arrive.
+    """
+    best, found = math.inf, (at_p, at_q)
+    for _ in range(PAIR_STEPS):
+        at = np.array([at_p]), np.array([at_q])
+        way = p.point_at(at[0]) - q.point_at(at[1])
+        (v_p, a_p), (v_q, a_q) = (_motion(rail, u) for rail, u in zip((p, q), at, strict=True))
+        off = float(dot(way, v_p)[0]), -float(dot(way, v_q)[0])
+        size = math.hypot(*off)
+        # A step along both rails leaves the valley a little; the next one comes back to it.
+        if size < best:
+            best, found = size, (at_p, at_q)
+        own = float((dot(v_p, v_p) + dot(way, a_p))[0]), float((dot(v_q, v_q) - dot(way, a_q))[0])
+        mixed = -float(dot(v_p, v_q)[0])
+        scale = own[0] * own[1] - mixed * mixed
+        if abs(scale) <= 1e-14 * abs(own[0] * own[1]):
+            break
+        at_p = _around(p, at_p - (off[0] * own[1] - off[1] * mixed) / scale)
+        at_q = _around(q, at_q - (off[1] * own[0] - off[0] * mixed) / scale)
+    return found
+
+
+def _motion(rail: Directrix, at: Floats) -> tuple[Floats, Floats]:
+    """(1, 3) each: velocity and acceleration."""
+    step = 1e-5 * (rail.interval[1] - rail.interval[0])
+    ends = [np.array([_around(rail, float(at[0]) + way)]) for way in (-step, step)]
+    acceleration = (rail.velocity_at(ends[1]) - rail.velocity_at(ends[0])) / (2.0 * step)
+    return rail.velocity_at(at), acceleration
+
+
+def _around(rail: Directrix, at: float) -> float:
+    first, last = rail.interval
+    return first + (at - first) % (last - first)
 
 
 def started_at(directrix: Directrix, at: float) -> Directrix:

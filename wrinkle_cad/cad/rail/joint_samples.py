@@ -32,8 +32,32 @@ def sampled_alone(
     Raises:
         InputError: a tolerance or ``max_chord`` that is not positive, or too fine.
     """
-    p_samples, q_samples = (sample_directrix(rail, tolerance, max_chord) for rail in (p, q))
+    p_samples, q_samples = (_sampled(rail, tolerance, max_chord) for rail in (p, q))
     return p_samples, q_samples
+
+
+def _sampled(rail: Directrix, tolerance: float, max_chord: float | None) -> Samples:
+    """The vertices of a rail; those of a closed one by its arc length."""
+    if not rail.is_closed or rail.is_polyline:
+        return sample_directrix(rail, tolerance, max_chord)
+    # Compiled code is loaded when it is needed, not when a file is read.
+    from wrinkle_cad.strip.curve.sampling import Samples, sample_curve
+
+    from .by_arc import RailByArc
+
+    by_arc = RailByArc(rail)
+    samples = sample_curve(
+        lambda arcs: rail.point_at(by_arc.parameters_at(arcs)),
+        (0.0, by_arc.length),
+        tolerance,
+        breaks=by_arc.arcs_at(np.array(rail.breaks, dtype=np.float64)),
+        max_chord=max_chord,
+    )
+    parameters = by_arc.parameters_at(samples.parameters)
+    # Where the curve has a corner its parameter is known to the last digit.
+    for mark in (*rail.interval, *rail.breaks):
+        parameters[np.abs(parameters - mark).argmin()] = mark
+    return Samples(parameters, rail.point_at(parameters))
 
 
 def sampled_jointly(
