@@ -128,3 +128,10 @@ def test_every_result_shows_itself_in_less_than_200_characters(
     shown += [strip.report, strip.triangulation, strip.unrolling, strip.p_samples, strip.ruled]
     for result in shown:
         assert len(repr(result)) < 200, type(result)
+
+
+def test_a_notebook_shows_the_drawing_of_a_pattern(strip: WrinkleStrip) -> None:
+    shown = strip.pattern(seam_allowance=6)._repr_html_()
+    assert shown.startswith("<div>")
+    assert shown.count("<svg ") == shown.count("</svg>") == 1
+    assert "<?xml" not in shown

@@ -59,6 +59,13 @@ class Pattern:
         more = ", ..." if len(names) > 3 else ""
         return f"Pattern({len(self.pieces)} pieces: {', '.join([*names][:3])}{more})"
 
+    def _repr_html_(self) -> str:
+        """What a notebook shows: the drawing of all pieces."""
+        from wrinkle_cad.pattern.formats.svg import svg_bytes
+
+        _, _, drawing = svg_bytes(self.pieces).decode("utf-8").partition("?>")
+        return f"<div>{drawing}</div>"
+
     def pieces_of(self, strip_index: int) -> tuple[PatternPiece, ...]:
         """The pieces of one strip, by its index."""
         pairs = zip(self.strip_index, self.pieces, strict=True)
