@@ -87,8 +87,16 @@ def read_dxf(path: Path) -> DxfContent:
     Raises:
         InputError: it cannot be read, is no DXF file, or would unfold without end.
     """
-    with _collector_at_rest():
-        return _content(path)
+    try:
+        with _collector_at_rest():
+            return _content(path)
+    except InputError:
+        raise
+    # A table that contradicts itself shows only when ezdxf is asked for what is in it.
+    except Exception as error:
+        raise InputError(
+            f"{path.name} contradicts itself ({type(error).__name__}). Export it again."
+        ) from error
 
 
 @contextmanager
