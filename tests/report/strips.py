@@ -18,11 +18,12 @@ from wrinkle_cad.report.views import MeshView, StripView
 from wrinkle_cad.strip.convexity import validity_matrix
 from wrinkle_cad.strip.curve.polyline import arc_lengths
 from wrinkle_cad.strip.flat.unrolling import unroll
-from wrinkle_cad.strip.gaps import find_gaps
+from wrinkle_cad.strip.invalid_runs import find_invalid_runs
 from wrinkle_cad.strip.rulings.surface import rule_strip
 from wrinkle_cad.strip.rulings.through_points import rail_through
 from wrinkle_cad.strip.triangulation import triangulate
-from wrinkle_cad.wrinkle.grain import radii_by_grain
+from wrinkle_cad.wrinkle.gap_report import gap_reports
+from wrinkle_cad.wrinkle.grain import Stock, inner_radii
 from wrinkle_cad.wrinkle.strip_report import report_on
 
 Rail = NDArray[np.float64]
@@ -82,7 +83,6 @@ def view_of(
         validity_matrix(*rails, planarity=strip.planarity),
         triangulate(*rails, search="local", planarity=strip.planarity),
         triangulate(*rails, criteria=("bending",), planarity=strip.planarity),
-        find_gaps(strip),
         role,
     )
 
@@ -105,10 +105,11 @@ def entry_of(view: StripView) -> dict[str, Any]:
         face_count=len(strip.triangles),
         lengths_mm=(float(places[0][-1]), float(places[1][-1])),
         least_bending=view.least_bending.bending,
-        gaps=view.gaps,
-        grain_radii_mm=radii_by_grain(strip, flat, ruled, "along"),
+        gaps=gap_reports((p, q), ruled, strip, is_closed=False, may_turn=view.role == "strip"),
+        invalid_runs=find_invalid_runs(strip),
+        inner_radii_mm=inner_radii(strip, flat, ruled, Stock()),
     )
-    return dict(finite({**report.as_json(), "passed": None}))
+    return dict(finite({**report.as_json(), "passed": None, "trials": []}))
 
 
 def summary_of(

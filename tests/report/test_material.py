@@ -28,7 +28,12 @@ def material_file(folder: Path, text: str) -> Path:
 def test_a_material_gives_its_limits(tmp_path: Path) -> None:
     limits = Limits(max_fold_deg=9.0).of(find_material(str(material_file(tmp_path, LEATHER))))
     assert (limits.material, limits.thickness_mm, limits.k_factor) == ("calf leather", 1.2, None)
-    assert limits.stated == ("bend radius at least 2 mm", "twist at most 4°", "fold at most 9°")
+    assert limits.stated == (
+        "bend radius at least 2 mm",
+        "twist at most 4°",
+        "fold at most 9°",
+        "no crease of 5° or more",
+    )
 
 
 def test_a_twist_limit_of_its_own_wins_over_the_material(tmp_path: Path) -> None:
@@ -101,7 +106,9 @@ def test_plywood_bends_to_the_radii_of_its_table(
     radius = factor * FEET * PLYWOOD[inches][0 if is_across else 1]
     given = {
         "name": "board",
+        "state": "developable",
         "creases": [],
+        "gaps": [],
         "max_strain_percent": 0.0,
         "max_twist_deg": 0.0,
         "max_fold_deg": 0.0,

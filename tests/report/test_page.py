@@ -150,7 +150,7 @@ def test_the_page_asks_for_nothing_from_outside(bad_page: tuple[dict[str, Any], 
 def test_text_from_the_file_stays_text(good_view: StripView) -> None:
     hostile = StripView(
         HOSTILE, good_view.triangulation, good_view.unrolling, good_view.pieces, good_view.valid,
-        good_view.local, good_view.least_bending, good_view.gaps,
+        good_view.local, good_view.least_bending,
     )  # fmt: skip
     finding = {"code": HOSTILE, "severity": "warning", "message": HOSTILE}
     summary = summary_of(

@@ -44,6 +44,8 @@ def entry(**changes: Any) -> dict[str, Any]:
             "q": {"space": 150.0, "pattern": 150.0},
         },
         "overlaps": False,
+        "gaps": [],
+        "trials": [],
     } | changes
 
 
@@ -74,7 +76,7 @@ def creased(**changes: Any) -> dict[str, Any]:
     [
         (
             entry(),
-            "Developable: strain at most 0%. 100% of the rails developable, smallest bend radius"
+            "Developable: strain 0%. 100% of the rails developable, smallest bend radius"
             " 3.00 mm, largest twist 0°.",
         ),
         (
@@ -125,8 +127,9 @@ def test_bands_are_judged_apart_from_the_wrinkles() -> None:
     assert verdict.passed is True
     assert verdict.reasons == ()
     assert verdict.bands == "Bands: 1 of 2 bands creased, 1 of 2 bands developable."
-    (missed,) = verdict.strips[1].missed
-    assert "change --margin, --height, --fade or --phase" in missed
+    crease, radius = verdict.strips[1].missed
+    assert crease.startswith("a has a crease of 45.0°")
+    assert radius == "a has a bend radius of 0 mm, and 2 is the least."
     assert [strip.passed for strip in verdict.strips] == [True, False, True]
 
 
@@ -138,7 +141,8 @@ def test_with_limits_the_verdict_is_pass_or_fail_in_words() -> None:
     failed = judge([creased()], Limits().of(CALF))
     assert failed.passed is False
     assert failed.headline == (
-        "FAIL for calf leather, 1.2 mm: wrinkle has a bend radius of 0 mm, and 2 is the least."
+        "FAIL for calf leather, 1.2 mm: wrinkle has a crease of 45.0°, and none of 5° or more is"
+        " allowed unless --max-crease says so. And 1 more."
     )
 
 
@@ -158,7 +162,7 @@ def test_with_limits_the_verdict_is_pass_or_fail_in_words() -> None:
 def test_each_limit_is_missed_on_its_own(limits: Limits, found: str) -> None:
     verdict = judge([stretched()], limits)
     (reason,) = verdict.reasons
-    assert reason.startswith(f"wrinkle has {found}. ")
+    assert reason == f"wrinkle has {found}."
     assert verdict.passed is False
 
 
@@ -182,7 +186,63 @@ def test_a_limit_that_is_just_reached_is_kept(limits: Limits) -> None:
     verdict = judge([stretched()], limits)
     assert verdict.passed is True
     assert verdict.reasons == ()
-    assert len(verdict.limits) == 1
+    assert verdict.limits[1:] == ("no crease of 5° or more",)
+
+
+def test_a_crease_passes_only_where_it_is_asked_for() -> None:
+    """Whoever asks for a strain gets no sharp fold unseen."""
+    for limits in (Limits(max_strain_percent=2.0), Limits(max_fold_deg=170.0)):
+        verdict = judge([creased()], limits)
+        assert verdict.passed is False
+        assert "a crease of 45.0°" in verdict.headline
+    slight = [{"angle_deg": 4.9, "p_mm": 40.0, "q_mm": 40.0, "cause": "corner"}]
+    assert judge([entry(creases=slight)], Limits(max_strain_percent=2.0)).passed is True
+    allowed = judge([creased()], Limits(max_strain_percent=2.0, max_crease_deg=90.0))
+    assert allowed.passed is True
+    assert "creased by 45.0°, and 90° is allowed" in allowed.headline
+
+
+def test_a_folded_strip_passes_no_limits() -> None:
+    folded = entry(state="folded")
+    for limits in (Limits(max_crease_deg=180.0), Limits(max_strain_percent=100.0)):
+        verdict = judge([folded], limits)
+        assert verdict.passed is False
+        assert "lies back on itself or passes through itself" in verdict.headline
+    assert judge([folded], Limits()).passed is None
+
+
+def test_a_strain_that_nobody_asked_about_is_said_with_the_pass() -> None:
+    verdict = judge([stretched()], Limits(min_radius_mm=1.0))
+    assert verdict.passed is True
+    assert "needs 0.520%, which no limit asks about" in verdict.headline
+
+
+TRIALS = [
+    {"change": "--height 1.5", "max_strain_percent": 0.2, "max_twist_deg": 4.0},
+    {"change": "--margin 6", "failed": "The opening leaves the upper."},
+    {"change": "--tolerance 0.0125", "max_strain_percent": 0.51, "max_twist_deg": 11.0},
+]
+
+
+def test_a_missed_limit_names_what_was_tried_and_keeps_it() -> None:
+    (reason,) = judge([stretched(trials=TRIALS)], Limits(max_strain_percent=0.3)).reasons
+    assert reason.endswith("Tried, and enough: --height 1.5 gives 0.200%.")
+    (reason,) = judge([stretched(trials=TRIALS)], Limits(max_strain_percent=0.1)).reasons
+    assert reason.endswith(
+        "Of what was tried nothing is enough; the nearest: --height 1.5 gives 0.200%."
+    )
+
+
+def test_of_radii_the_largest_trial_is_the_nearest() -> None:
+    tried = [
+        {"change": "--height 1.5", "inner_bend_radius_mm": 3.2},
+        {"change": "--fade 0.45", "inner_bend_radius_mm": 3.9},
+        {"change": "--margin 6", "inner_bend_radius_mm": None},
+    ]
+    (reason,) = judge([entry(trials=tried[:2])], Limits(min_radius_mm=5.0)).reasons
+    assert "the nearest: --fade 0.45 gives 3.90 mm" in reason
+    (reason,) = judge([entry(trials=tried)], Limits(min_radius_mm=5.0)).reasons
+    assert "Tried, and enough: --margin 6 gives no bend." in reason
 
 
 def test_a_flat_strip_keeps_every_bend_radius() -> None:

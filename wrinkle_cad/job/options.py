@@ -103,6 +103,12 @@ class JudgingSettings(LimitSettings):
             metavar="NAME|FILE.toml",
         ),
     )
+    no_trials: bool = field(
+        default=False,
+        metadata=option(
+            "do not try what would help a strip that is not developable or misses a limit"
+        ),
+    )
     strict: bool = field(
         default=False, metadata=option("a missed limit is a failure (exit code 1)")
     )

@@ -94,24 +94,36 @@ def strip_of(job: Job, p: object, q: object, name: str) -> WrinkleStrip:
     """
     from wrinkle_cad.wrinkle.wrinkle_strip import WrinkleStrip
 
-    own_name = job.name if name == settings.STRIP_NAME else name
     return WrinkleStrip(
-        p, q, name=own_name, **values_of(job, StripSettings), **material_of(job, limits_of(job))
+        p,
+        q,
+        name=strip_name(job, name),
+        **values_of(job, StripSettings),
+        **material_of(job, limits_of(job)),
     )
 
 
+def strip_name(job: Job, name: str) -> str:
+    """Returns what a strip of the file is called: as the job where the file gives no name."""
+    return job.name if name == settings.STRIP_NAME else name
+
+
 def material_of(job: Job, limits: Limits) -> dict[str, Any]:
-    """Returns what a strip is told of its material: thickness, K-factor and grain.
+    """Returns what a strip is told of its material: thickness, K-factor, grain and side.
 
     Args:
         job: the settings.
         limits: with the material.
     """
     k_factor = limits.k_factor if job.k_factor is None else job.k_factor
+    side = job.surface_side
+    if job.right_side == "back" and side != "middle":
+        side = "inside" if side == "outside" else "outside"
     return {
         "thickness": limits.thickness_mm if job.thickness is None else job.thickness,
         "k_factor": settings.K_FACTOR if k_factor is None else k_factor,
         "grain": job.grain,
+        "surface_side": side,
     }
 
 

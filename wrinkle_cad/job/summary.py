@@ -26,7 +26,7 @@ def summary_of(
     job: Job,
     file: CadFile,
     chosen: Chosen,
-    reports: Sequence[StripReport],
+    entries: Sequence[dict[str, Any]],
     findings: Sequence[Finding],
     limits: Limits,
 ) -> dict[str, Any]:
@@ -36,16 +36,13 @@ def summary_of(
         job: the settings.
         file: what was read.
         chosen: what was taken from the file.
-        reports: one per strip.
+        entries: one per strip, as ``entries_of`` gives them.
         findings: what was noticed.
         limits: what the strips are judged by.
     """
     from wrinkle_cad.report.verdict import judge
 
-    entries = [report.as_json() for report in reports]
     verdict = judge(entries, limits)
-    for entry, said in zip(entries, verdict.strips, strict=True):
-        entry["passed"] = said.passed
     return {
         "schema": SCHEMA,
         "schema_version": SCHEMA_VERSION,
@@ -57,10 +54,25 @@ def summary_of(
         },
         "settings": settings_as_json(job),
         "versions": installed_versions(),
-        "strips": entries,
+        "strips": list(entries),
         "verdict": verdict.as_json(),
         "findings": [asdict(finding) for finding in findings],
     }
+
+
+def entries_of(reports: Sequence[StripReport], limits: Limits) -> list[dict[str, Any]]:
+    """Returns the entries of ``strips``, judged, before anything was tried.
+
+    Args:
+        reports: one per strip.
+        limits: what the strips are judged by.
+    """
+    from wrinkle_cad.report.verdict import judge
+
+    entries: list[dict[str, Any]] = [{**report.as_json(), "trials": []} for report in reports]
+    for entry, said in zip(entries, judge(entries, limits).strips, strict=True):
+        entry["passed"] = said.passed
+    return entries
 
 
 def settings_as_json(job: Job) -> dict[str, Any]:

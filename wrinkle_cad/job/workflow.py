@@ -15,7 +15,7 @@ from .job import Job
 from .outcome import JobDone, JobFailed, Progress
 from .outputs import check_outputs_are_ours, hashes_of, output_paths, outputs_together
 from .phases import PhaseClock
-from .summary import summary_of, to_json
+from .summary import entries_of, summary_of, to_json
 
 if TYPE_CHECKING:
     from wrinkle_cad.cad.exchange.choose import Chosen
@@ -136,14 +136,18 @@ def _check_no_waves(job: Job) -> None:
 
 
 def _judged(job: Job, file: CadFile, chosen: Chosen, made: Made) -> dict[str, Any]:
+    from .trials import add_trials
+
     findings = [
         *(made.upper.findings if made.upper is not None else ()),
         *(finding for strip in made.strips for finding in findings_on(strip)),
         *made.pattern.findings,
         *_sheet_findings(made),
     ]
-    reports = [strip.report for strip in made.strips]
-    summary = summary_of(job, file, chosen, reports, findings, made.limits)
+    entries = entries_of([strip.report for strip in made.strips], made.limits)
+    if not job.no_trials:
+        add_trials(job, chosen, entries, made.limits)
+    summary = summary_of(job, file, chosen, entries, findings, made.limits)
     if made.upper is not None:
         summary["stitch"] = made.upper.stitch_as_json()
     return summary

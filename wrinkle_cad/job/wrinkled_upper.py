@@ -3,13 +3,17 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeVar
 
 import numpy as np
+from numpy.typing import NDArray
 
 from wrinkle_cad import settings
 from wrinkle_cad.errors import Finding
+from wrinkle_cad.wrinkle.facing import faces_away
+from wrinkle_cad.wrinkle.grain import Stock
 from wrinkle_cad.wrinkle.triangulated_strip import TriangulatedStrip
 from wrinkle_cad.wrinkle.wrinkle_strip import WrinkleStrip
 
@@ -21,6 +25,9 @@ if TYPE_CHECKING:
     from wrinkle_cad.cad.exchange.shapes import NamedShape
     from wrinkle_cad.cad.upper.opening import CarveRequest, Opening
     from wrinkle_cad.cad.upper.stitch import Stitched
+
+
+Strip = TypeVar("Strip", bound=TriangulatedStrip)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -53,11 +60,7 @@ class WrinkledUpper:
     @property
     def turned_over(self) -> tuple[bool, ...]:
         """For each strip, then each band, whether its normal points to the upper's inside."""
-        from wrinkle_cad.wrinkle.facing import faces_away
-
-        rails = [rail.feet for opening in self.openings for rail in opening.rails]
-        points = np.vstack([feet.points for feet in rails])
-        outward = np.vstack([feet.normals for feet in rails])
+        points, outward = _outside(self.openings)
         return tuple(
             faces_away(strip.triangulation, points, outward)
             for strip in (*self.strips, *self.bands)
@@ -141,8 +144,27 @@ def wrinkle_upper(job: Job, chosen: Chosen) -> WrinkledUpper:
         for opening, given in zip(openings, chosen.strips, strict=True)
     ]
     stitched = stitch(openings, strips, tolerance=job.tolerance)
-    bands = _bands(job, stitched)
-    return WrinkledUpper(chosen.upper, tuple(openings), tuple(strips), bands, stitched)
+    return WrinkledUpper(
+        chosen.upper,
+        tuple(openings),
+        tuple(_facing_out(strips, openings)),
+        tuple(_facing_out(_bands(job, stitched), openings)),
+        stitched,
+    )
+
+
+def _facing_out(strips: Iterable[Strip], openings: Sequence[Opening]) -> Iterator[Strip]:
+    """The strips, with the upper's outside as their right side."""
+    points, outward = _outside(openings)
+    for strip in strips:
+        is_over = faces_away(strip.triangulation, points, outward)
+        yield strip.turned_over() if is_over else strip
+
+
+def _outside(openings: Sequence[Opening]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Points of the upper beside its openings, and its outward normals there."""
+    feet = [rail.feet for opening in openings for rail in opening.rails]
+    return np.vstack([each.points for each in feet]), np.vstack([each.normals for each in feet])
 
 
 def _request(job: Job, given: StripInput) -> CarveRequest:
@@ -195,7 +217,7 @@ def _bands(job: Job, stitched: Stitched) -> tuple[TriangulatedStrip, ...]:
             name=band.name,
             role="band",
             color=settings.BAND_COLOR,
-            **material,
+            stock=Stock(**material),
         )
         for band in stitched.report.bands
     )

@@ -109,7 +109,6 @@ def written_page(made: Made, summary: Mapping[str, Any]) -> str:
             valid=strip.valid if _is_drawable(strip) else None,
             local=strip.local,
             least_bending=strip.least_bending,
-            gaps=strip.report.gaps,
             role=strip.role,
         )
         for index, strip in enumerate(made.strips)

@@ -17,7 +17,7 @@ from wrinkle_cad.strip.triangulation import Triangulation, triangulate
 from .markup import Element, node
 from .numbers import Numbers
 from .page import page_of
-from .tables import cell, table
+from .table import cell, table
 
 METHODS: Final[tuple[tuple[str, settings.Search, tuple[settings.Criterion, ...], str], ...]] = (
     ("LODT+LMBT", "local", ("invalid", "bending"), "most valid bridges, looking one step ahead"),

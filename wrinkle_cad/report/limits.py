@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field, replace
 from typing import ClassVar
 
+from wrinkle_cad import settings
 from wrinkle_cad.options.option import option
 
 from .material import Material
@@ -29,7 +30,11 @@ class LimitSettings:
     max_crease_deg: float | None = field(
         default=None,
         metadata=option(
-            "sharpest crease that passes", unit="deg", least=0.0, most=180.0, flag="--max-crease"
+            "sharpest crease that passes; with other limits and without this one, none does",
+            unit="deg",
+            least=0.0,
+            most=180.0,
+            flag="--max-crease",
         ),
     )
     min_radius_mm: float | None = field(
@@ -82,7 +87,7 @@ class Limits(LimitSettings):
     >>> from wrinkle_cad.report.material import Material
     >>> board = Material(name="board", largest_strain_percent=1.0, largest_twist_deg=4.0)
     >>> Limits(max_twist_deg=2.0).of(board).stated
-    ('strain at most 1%', 'twist at most 2°')
+    ('strain at most 1%', 'twist at most 2°', 'no crease of 5° or more')
     """
 
     made_of: Material | None = None
@@ -120,6 +125,11 @@ class Limits(LimitSettings):
         return self.made_of.name if self.made_of else ""
 
     @property
+    def allowed_crease_deg(self) -> float:
+        """The sharpest crease that passes; of one that nobody allowed, the least that is one."""
+        return settings.CREASE_DEG if self.max_crease_deg is None else self.max_crease_deg
+
+    @property
     def stated(self) -> tuple[str, ...]:
         """The limits in words, in a fixed order; empty when there are none."""
         along = "" if self.min_radius_across_grain_mm is None else " along the grain"
@@ -132,7 +142,10 @@ class Limits(LimitSettings):
             ("fold at most {:g}°", self.max_fold_deg),
             ("invalid bridges on at most {:g}% of the rails", self.max_invalid_percent),
         )
-        return tuple(words.format(limit) for words, limit in lines if limit is not None)
+        said = tuple(words.format(limit) for words, limit in lines if limit is not None)
+        if said and self.max_crease_deg is None:
+            return (*said, f"no crease of {settings.CREASE_DEG:g}° or more")
+        return said
 
 
 def _first(own: float | None, material: float | None) -> float | None:

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from typing import Any, Final
 
-from .markup import Child, Element, node
+from .help_tables import gaps_card, runs_card, trials_card
+from .markup import Element, node
 from .numbers import TIMES, Numbers
+from .table import card, cell, strip_name, table
 
 _SIGN: Final = {
     "developable": "\N{CHECK MARK}",
@@ -86,51 +88,18 @@ def tables_panel(numbers: Numbers) -> list[Element]:
         _pairs_card(numbers, "Seconds", "/seconds", unit="s", digits=3),
     ]
     return [
-        card
-        for card in (
-            _gaps_card(numbers),
+        shown
+        for shown in (
+            gaps_card(numbers),
+            trials_card(numbers),
             _findings_card(numbers),
             _strips_card(numbers),
-            node("div", *(card for card in small if card is not None), class_="tables"),
+            runs_card(numbers),
+            node("div", *(each for each in small if each is not None), class_="tables"),
             _pairs_card(numbers, "Settings", "/settings"),
         )
-        if card is not None
+        if shown is not None
     ]
-
-
-def _card(title: str, *content: Child) -> Element:
-    return node("section", node("h2", title, class_="head"), *content, class_="card")
-
-
-def table(columns: Sequence[tuple[str, bool]], rows: Sequence[Element]) -> Element:
-    """A table that scrolls sideways by itself.
-
-    Args:
-        columns: title and whether the column holds numbers.
-        rows: its ``tr`` elements.
-    """
-    head = (node("th", title, scope="col", **_number_class(right)) for title, right in columns)
-    body = node("tbody", *rows)
-    return node("div", node("table", node("thead", node("tr", *head)), body), class_="scroll")
-
-
-def cell(*content: Child, right: bool = False, kind: str = "") -> Element:
-    """A table cell.
-
-    Args:
-        content: what stands in it.
-        right: whether it holds a number.
-        kind: ``name`` (any length), ``word`` (never broken), ``text`` (sentences).
-    """
-    return node("td", *content, **({"class_": kind} if kind else _number_class(right)))
-
-
-def _number_class(right: bool) -> dict[str, str]:
-    return {"class_": "n"} if right else {}
-
-
-def _name(numbers: Numbers, at: int) -> str:
-    return str(numbers.get(f"/strips/{at}/name"))
 
 
 def _strips_card(numbers: Numbers) -> Element:
@@ -160,13 +129,13 @@ def _strips_card(numbers: Numbers) -> Element:
             *(numbers.show(f"{entry}/{key}") for key in ("bending", "least_bending")),
             numbers.show(f"/verdict/strips/{at}/price_of_developability", TIMES, 2),
         ]
-        name = cell(_name(numbers, at), kind="name")
+        name = cell(strip_name(numbers, at), kind="name")
         rows.append(node("tr", name, *(cell(figure, right=True) for figure in shown)))
     note = (
         "Price: bending energy of the strip over that of the one that bends least. Far above 1,"
         " its bridges were made locally convex with folds."
     )
-    return _card("Strips", table(columns, rows), node("p", note, class_="note"))
+    return card("Strips", table(columns, rows), node("p", note, class_="note"))
 
 
 def _seams_card(numbers: Numbers) -> Element:
@@ -180,7 +149,7 @@ def _seams_card(numbers: Numbers) -> Element:
             rows.append(
                 node(
                     "tr",
-                    cell(f"{_name(numbers, at)}, {title}", kind="name"),
+                    cell(f"{strip_name(numbers, at)}, {title}", kind="name"),
                     cell(numbers.show(f"{seam}/space", "mm", 3), right=True),
                     cell(numbers.show(f"{seam}/pattern", "mm", 3), right=True),
                     cell(numbers.show(difference, "mm", 4), right=True),
@@ -189,70 +158,13 @@ def _seams_card(numbers: Numbers) -> Element:
         rows.append(
             node(
                 "tr",
-                cell(f"{_name(numbers, at)}, area", kind="name"),
+                cell(f"{strip_name(numbers, at)}, area", kind="name"),
                 cell(numbers.show(f"{entry}/area_3d_mm2", "mm²", 2), right=True),
                 cell(numbers.show(f"{entry}/area_pattern_mm2", "mm²", 2), right=True),
                 cell(),
             )
         )
-    return _card("Seams and areas", table(columns, rows))
-
-
-def _gaps_card(numbers: Numbers) -> Element | None:
-    columns = (
-        ("Strip", False),
-        ("Kind", False),
-        ("Bridges", True),
-        ("Along P", True),
-        ("Along Q", True),
-        ("Angle defect", True),
-        ("Twist", True),
-    )
-    rows = [
-        _gap_row(numbers, at, number, gap)
-        for at, entry in enumerate(numbers.get("/strips"))
-        for number, gap in enumerate(entry["gaps"])
-    ]
-    if not rows:
-        return None
-    note = (
-        "Runs of bridges at which the triangles are not those of a developable surface: figures of"
-        " the search, which change with the tolerance. Click a row to see its middle."
-    )
-    advice = {
-        gap["kind"]: gap["advice"] for entry in numbers.get("/strips") for gap in entry["gaps"]
-    }
-    lines = (
-        node("div", node("dt", kind.capitalize()), node("dd", words))
-        for kind, words in advice.items()
-    )
-    return _card(
-        "Bridges that are not locally convex",
-        table(columns, rows),
-        node("p", note, class_="note"),
-        node("h3", "What to change", class_="below"),
-        node("dl", *lines, class_="advice"),
-    )
-
-
-def _gap_row(numbers: Numbers, at: int, number: int, gap: Mapping[str, Any]) -> Element:
-    path = f"/strips/{at}/gaps/{number}"
-    span: list[Child] = [numbers.show(f"{path}/first_bridge")]
-    if gap["last_bridge"] != gap["first_bridge"]:
-        span += [" to ", numbers.show(f"{path}/last_bridge")]
-    return node(
-        "tr",
-        cell(_name(numbers, at), kind="name"),
-        cell(gap["kind"], kind="word"),
-        cell(*span, right=True),
-        cell(numbers.show(f"{path}/p_length_mm", "mm", 2), right=True),
-        cell(numbers.show(f"{path}/q_length_mm", "mm", 2), right=True),
-        cell(numbers.show(f"{path}/angle_defect_deg", "°", 2), right=True),
-        cell(numbers.show(f"{path}/twist_deg", "°", 2), right=True),
-        data_gap_strip=str(at),
-        data_first=str(gap["first_bridge"]),
-        data_last=str(gap["last_bridge"]),
-    )
+    return card("Seams and areas", table(columns, rows))
 
 
 def _findings_card(numbers: Numbers) -> Element | None:
@@ -267,7 +179,7 @@ def _findings_card(numbers: Numbers) -> Element | None:
         )
         for finding in findings
     ]
-    return _card("Findings", node("ul", *items, class_="findings"))
+    return card("Findings", node("ul", *items, class_="findings"))
 
 
 def _stitch_card(numbers: Numbers) -> Element | None:
@@ -282,7 +194,7 @@ def _stitch_card(numbers: Numbers) -> Element | None:
     rows.append(
         node("tr", cell("Valid geometry"), cell("yes" if stitch["is_valid"] else "no", right=True))
     )
-    return _card("Sewn to the body", table((("", False), ("", True)), rows))
+    return card("Sewn to the body", table((("", False), ("", True)), rows))
 
 
 def _angles_card(numbers: Numbers) -> Element | None:
@@ -301,7 +213,7 @@ def _angles_card(numbers: Numbers) -> Element | None:
         )
         name = cell(seam["seam"], kind="name")
         rows.append(node("tr", name, *(cell(figure, right=True) for figure in shown)))
-    return _card("Angles at the seams", table(columns, rows))
+    return card("Angles at the seams", table(columns, rows))
 
 
 def _pairs_card(
@@ -318,7 +230,7 @@ def _pairs_card(
         is_number = isinstance(value, int | float) and not isinstance(value, bool)
         shown = numbers.show(f"{path}/{key}", unit, digits) if is_number else _words(value)
         rows.append(node("div", node("dt", key.replace("_", " ")), node("dd", shown)))
-    return _card(title, node("dl", *rows, class_="pairs"))
+    return card(title, node("dl", *rows, class_="pairs"))
 
 
 def _words(value: Any) -> str:

@@ -11,9 +11,10 @@ from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass
 from typing import Any, Final
 
+from wrinkle_cad import settings
 from wrinkle_cad.wrinkle.strip_report import State
 
-from .judging import figure, missed_limits
+from .judging import figure, largest_crease, missed_limits
 from .limits import Limits
 
 _WORST_FIRST: Final[tuple[State, ...]] = ("folded", "creased", "stretched", "developable")
@@ -122,7 +123,7 @@ def invalid_percent(entry: Mapping[str, Any]) -> float:
 def _judge_strip(entry: Mapping[str, Any], limits: Limits) -> StripVerdict:
     seams, least = entry["seam_lengths_mm"], float(entry["least_bending"])
     missed = tuple(
-        f"{each.found} {each.action}"
+        f"{each.found} {each.action}".strip()
         for each in missed_limits(entry, limits, invalid_percent(entry))
     )
     return StripVerdict(
@@ -158,7 +159,7 @@ def _state_words(entry: Mapping[str, Any]) -> str:
     strain = figure(entry["max_strain_percent"])
     if state == "stretched":
         return f"Stretched: by at most {strain}%, over {figure(entry['stretched_mm'])} mm."
-    return f"Developable: strain at most {strain}%."
+    return f"Developable: strain {strain}%."
 
 
 def _other_figures(entry: Mapping[str, Any]) -> str:
@@ -196,9 +197,14 @@ def _headline(
 
 def _kept_words(entries: Sequence[Mapping[str, Any]], limits: Limits) -> str:
     parts = []
+    strain = max(float(entry["max_strain_percent"]) for entry in entries)
+    crease = max(largest_crease(entry) for entry in entries)
     if limits.max_strain_percent is not None:
-        strain = max(float(entry["max_strain_percent"]) for entry in entries)
         parts.append(f"gives {limits.max_strain_percent:g}%, needs {figure(strain)}%")
+    elif strain > settings.STRETCH_PERCENT:
+        parts.append(f"needs {figure(strain)}%, which no limit asks about")
+    if crease >= settings.CREASE_DEG:
+        parts.append(f"creased by {figure(crease)}°, and {limits.allowed_crease_deg:g}° is allowed")
     radii = [entry["inner_bend_radius_mm"] for entry in entries]
     bent = [float(radius) for radius in radii if radius is not None]
     if limits.min_radius_mm is not None and bent:

@@ -17,7 +17,6 @@ from numpy.typing import ArrayLike, NDArray
 from wrinkle_cad.errors import InputError
 from wrinkle_cad.pattern.piece.piece import PatternPiece
 from wrinkle_cad.strip.flat.unrolling import Unrolling
-from wrinkle_cad.strip.gaps import Gap
 from wrinkle_cad.strip.triangulation import Triangulation
 
 from .flat import bridge_ends
@@ -46,8 +45,6 @@ class StripView:
     """LODT+LMBT on the same samples, for comparison."""
     least_bending: Triangulation | None = None
     """GMBT on the same samples: what the strip would cost if developability did not count."""
-    gaps: Sequence[Gap] = ()
-    """The runs of invalid bridges."""
     role: Role = "strip"
     """``strip``, or ``band`` for the sheets between a strip and the body."""
 

@@ -56,9 +56,9 @@ if TYPE_CHECKING:
     from .flat.unrolling import Unrolling as Unrolling
     from .flat.unrolling import unroll as unroll
     from .flat.unrolling import unroll_cones as unroll_cones
-    from .gaps import Gap as Gap
-    from .gaps import covered_lengths as covered_lengths
-    from .gaps import find_gaps as find_gaps
+    from .invalid_runs import InvalidRun as InvalidRun
+    from .invalid_runs import covered_lengths as covered_lengths
+    from .invalid_runs import find_invalid_runs as find_invalid_runs
     from .triangulation import P_STEP as P_STEP
     from .triangulation import Q_STEP as Q_STEP
     from .triangulation import Triangulation as Triangulation
@@ -67,14 +67,14 @@ if TYPE_CHECKING:
 _MODULE_OF: Final = {
     "P_STEP": "triangulation",
     "Q_STEP": "triangulation",
-    "Gap": "gaps",
+    "InvalidRun": "invalid_runs",
     "Meeting": "curve.meetings",
     "Samples": "curve.sampling",
     "SelfCrossings": "crossings",
     "Triangulation": "triangulation",
     "Unrolling": "flat.unrolling",
-    "find_gaps": "gaps",
-    "covered_lengths": "gaps",
+    "find_invalid_runs": "invalid_runs",
+    "covered_lengths": "invalid_runs",
     "meetings_of": "curve.meetings",
     "sample_curve": "curve.sampling",
     "self_crossings": "crossings",

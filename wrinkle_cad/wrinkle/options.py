@@ -8,7 +8,7 @@ from typing import ClassVar, Final, Literal
 from wrinkle_cad import settings
 from wrinkle_cad.options.checking import check_options
 from wrinkle_cad.options.option import option
-from wrinkle_cad.pattern.piece.options import Direction, PieceOptions
+from wrinkle_cad.pattern.piece.options import Direction, PieceOptions, SurfaceSide
 
 _OF_PIECES: Final = {field.name: field.metadata for field in fields(PieceOptions)}
 """What is said of an option that a strip and its pieces share."""
@@ -172,3 +172,6 @@ class StripArguments(StripSettings):
         default=settings.K_FACTOR, kw_only=True, metadata=_OF_PIECES["k_factor"]
     )
     grain: Direction = field(default="along", kw_only=True, metadata=_OF_PIECES["grain"])
+    surface_side: SurfaceSide = field(
+        default="middle", kw_only=True, metadata=_OF_PIECES["surface_side"]
+    )

@@ -11,9 +11,11 @@ import numpy as np
 
 from wrinkle_cad import settings
 from wrinkle_cad.strip.flat.unrolling import Unrolling
-from wrinkle_cad.strip.gaps import Gap, covered_lengths, gap_entry
-from wrinkle_cad.strip.rulings.surface import RuledStrip, inner_bend_radius
+from wrinkle_cad.strip.invalid_runs import InvalidRun, covered_lengths, run_entry
+from wrinkle_cad.strip.rulings.surface import RuledStrip
 from wrinkle_cad.strip.triangulation import Triangulation
+
+from .gap_report import GapReport
 
 Role = Literal["strip", "band"]
 State = Literal["folded", "creased", "stretched", "developable"]
@@ -124,8 +126,10 @@ class StripReport:
     """Seam lengths by rail, ``p`` and ``q``."""
     overlaps: bool
     """Whether the flat pattern covers itself."""
-    gaps: tuple[Gap, ...]
-    """The runs of invalid bridges."""
+    gaps: tuple[GapReport, ...]
+    """Stretches where a flat sheet must give, in order along the strip, with what closes them."""
+    invalid_runs: tuple[InvalidRun, ...]
+    """Runs of bridges that are not locally convex: figures of the search."""
 
     def __repr__(self) -> str:
         return f"StripReport({self.name!r}, {self.state}, {self.area_3d_mm2:.1f} mm2)"
@@ -146,9 +150,11 @@ class StripReport:
         radii = [name for name in entry if "radius" in name and entry[name] == math.inf]
         entry.update(dict.fromkeys(radii))
         seams = {rail: asdict(seam) for rail, seam in self.seam_lengths_mm.items()}
-        gaps = [gap_entry(gap) for gap in self.gaps]
+        runs = [run_entry(run) for run in self.invalid_runs]
+        gaps = [asdict(gap) for gap in self.gaps]
         creases = [asdict(crease) for crease in self.creases]
-        return {**entry, "seam_lengths_mm": seams, "gaps": gaps, "creases": creases}
+        lists = {"gaps": gaps, "invalid_runs": runs, "creases": creases}
+        return {**entry, "seam_lengths_mm": seams, **lists}
 
 
 def report_on(
@@ -162,12 +168,11 @@ def report_on(
     face_count: int,
     lengths_mm: tuple[float, float],
     least_bending: float,
-    gaps: Sequence[Gap],
-    grain_radii_mm: tuple[float, float],
+    gaps: Sequence[GapReport],
+    invalid_runs: Sequence[InvalidRun],
+    inner_radii_mm: tuple[float, float, float],
     is_folded: bool = False,
     is_closed: bool = False,
-    thickness_mm: float = 0.0,
-    k_factor: float = settings.K_FACTOR,
 ) -> StripReport:
     """Collects the numbers of one strip.
 
@@ -181,18 +186,15 @@ def report_on(
         face_count: of the same surface.
         lengths_mm: of the directrices P and Q in space.
         least_bending: energy of the least-bending triangulation of the same rails.
-        gaps: the runs of invalid bridges.
-        grain_radii_mm: smallest bend radii of the surface along and across the grain.
+        gaps: its gaps, with what closes them.
+        invalid_runs: the runs of invalid bridges.
+        inner_radii_mm: smallest bend radii at the material's inner face: in all, along the grain
+            and across it.
         is_folded: whether it folds back on itself or passes through itself.
         is_closed: whether its rails are.
-        thickness_mm: of the material.
-        k_factor: where its neutral layer lies, in shares of the thickness from the inner face.
     """
     radius = ruled.smallest_bend_radius(math.radians(settings.CREASE_DEG))
-    by_grain = grain_radii_mm if radius > 0.0 else (0.0, 0.0)
-    inner, along, across = (
-        inner_bend_radius(at_surface, thickness_mm, k_factor) for at_surface in (radius, *by_grain)
-    )
+    inner, along, across = inner_radii_mm if radius > 0.0 else (0.0, 0.0, 0.0)
     failed = ~triangulation.valid & ~triangulation.inflection
     failed[[0, -1]] = False
     p_invalid, q_invalid = covered_lengths(triangulation, failed)
@@ -238,6 +240,7 @@ def report_on(
         },
         overlaps=unrolling.overlaps,
         gaps=tuple(gaps),
+        invalid_runs=tuple(invalid_runs),
     )
 
 

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import contextlib
+from copy import copy
 from dataclasses import fields, replace
 from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Any, Final, Literal, Self
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -15,15 +16,16 @@ from wrinkle_cad import settings
 from wrinkle_cad.errors import CadError, Finding
 from wrinkle_cad.options.checking import check_known
 from wrinkle_cad.options.signature import takes_options_of
-from wrinkle_cad.pattern.piece.options import PatternArguments, PieceSettings
+from wrinkle_cad.pattern.piece.options import PatternArguments, PieceSettings, SurfaceSide
 from wrinkle_cad.strip.convexity import validity_matrix
 from wrinkle_cad.strip.curve.polyline import polyline_length
 from wrinkle_cad.strip.flat.unrolling import Unrolling, unroll, unroll_cones
-from wrinkle_cad.strip.gaps import find_gaps
+from wrinkle_cad.strip.invalid_runs import find_invalid_runs
 from wrinkle_cad.strip.triangulation import Triangulation, triangulate
 
-from .exact_surface import exact_surface
-from .grain import radii_by_grain
+from .exact_surface import exact_surface, rail_curve
+from .gap_report import GapReport, gap_reports
+from .grain import Stock, inner_radii
 from .loudness import warn_of
 from .strip_findings import (
     FOLDED,
@@ -40,11 +42,13 @@ if TYPE_CHECKING:
     from OCP.TopoDS import TopoDS_Shell
 
     from wrinkle_cad.cad.rail.directrix import Directrix
-    from wrinkle_cad.pattern.piece.options import Direction
     from wrinkle_cad.strip.curve.sampling import Samples
     from wrinkle_cad.strip.rulings.surface import RuledStrip
 
     from .cut_pattern import Pattern
+
+
+_NO_STOCK: Final = Stock()
 
 
 class TriangulatedStrip:
@@ -63,9 +67,8 @@ class TriangulatedStrip:
         color: of the surface, (red, green, blue) from 0 to 1.
         surface: ``cones`` or ``facets``.
         role: ``strip``, or ``band`` between a strip and the body.
-        thickness: mm; of the material.
-        k_factor: where its neutral layer lies, in shares of the thickness from the inner face.
-        grain: of the material: ``along`` or ``across`` the strip, or a direction in space.
+        stock: thickness, K-factor and grain of the material, and the side of it that the surface
+            is.
         findings: what was noticed while it was made.
     """
 
@@ -82,9 +85,7 @@ class TriangulatedStrip:
         color: tuple[float, float, float] = settings.STRIP_COLOR,
         surface: settings.Surface = settings.SURFACE,
         role: Role = "strip",
-        thickness: float = 0.0,
-        k_factor: float = settings.K_FACTOR,
-        grain: Direction = "along",
+        stock: Stock = _NO_STOCK,
         findings: tuple[Finding, ...] = (),
     ) -> None:
         self.p, self.q = p, q
@@ -95,9 +96,7 @@ class TriangulatedStrip:
         self.color = color
         self.surface: settings.Surface = surface
         self.role: Role = role
-        self.thickness = thickness
-        self.k_factor = k_factor
-        self.grain: Direction = grain
+        self.stock = stock
         self._noticed = (*findings, *shape_findings(name, triangulation))
         self._is_told = warn_of(self._noticed, 3)
         self._shells: dict[str, TopoDS_Shell] = {}
@@ -108,6 +107,13 @@ class TriangulatedStrip:
             f"{type(self).__name__}({self.name!r}, {len(t.p)} x {len(t.q)} samples, "
             f"{t.invalid_count} of {t.interior_count} bridges not locally convex)"
         )
+
+    def turned_over(self) -> Self:
+        """The same strip with the other side of its surface as the right one."""
+        other: dict[SurfaceSide, SurfaceSide] = {"inside": "outside", "outside": "inside"}
+        twin = copy(self)
+        twin.stock = replace(self.stock, surface_side=other.get(self.stock.surface_side, "middle"))
+        return twin
 
     @cached_property
     def findings(self) -> tuple[Finding, ...]:
@@ -227,6 +233,14 @@ class TriangulatedStrip:
     @cached_property
     def report(self) -> StripReport:
         """The strip's numbers."""
+        return self._report_with(self.gaps)
+
+    @cached_property
+    def report_without_gaps(self) -> StripReport:
+        """The same but for the gaps: nothing is tried to close them, which takes longest."""
+        return self._report_with(())
+
+    def _report_with(self, gaps: tuple[GapReport, ...]) -> StripReport:
         from wrinkle_cad.cad.kernel.topology import faces_of
 
         return report_on(
@@ -239,20 +253,28 @@ class TriangulatedStrip:
             face_count=len(faces_of(self.topods_shell())),
             lengths_mm=self._rail_lengths(),
             least_bending=self.least_bending.bending,
-            gaps=find_gaps(self.triangulation),
+            gaps=gaps,
+            invalid_runs=find_invalid_runs(self.triangulation),
             is_closed=self.p.is_closed and self.q.is_closed,
             is_folded=any(finding.code in FOLDED for finding in self._noticed),
-            grain_radii_mm=radii_by_grain(
-                self.triangulation, self.unrolling, self.ruled, self.grain
-            ),
-            thickness_mm=self.thickness,
-            k_factor=self.k_factor,
+            inner_radii_mm=inner_radii(self.triangulation, self.unrolling, self.ruled, self.stock),
         )
 
     @cached_property
     def ruled(self) -> RuledStrip:
         """The exact surface between the two curves: rulings, pieces, strain, creases, radii."""
         return exact_surface(self.p, self.q, self.p_samples, self.q_samples, self.triangulation)
+
+    @cached_property
+    def gaps(self) -> tuple[GapReport, ...]:
+        """Where a flat sheet must give, and which turn of a rail was tried that closes it."""
+        return gap_reports(
+            (rail_curve(self.p), rail_curve(self.q)),
+            self.ruled,
+            self.triangulation,
+            is_closed=self.p.is_closed and self.q.is_closed,
+            may_turn=self.role == "strip",
+        )
 
     @property
     def area_mm2(self) -> float:
@@ -293,7 +315,7 @@ class TriangulatedStrip:
 
         Args:
             piece_settings: allowances, notches, texts and the rest; when None, the defaults with
-                the strip's own tolerance, thickness, K-factor and grain.
+                the strip's own tolerance and material.
             options: fields of ``PieceSettings`` by name; they go before ``piece_settings``.
 
         Raises:
@@ -305,9 +327,10 @@ class TriangulatedStrip:
         check_known(options, (option.name for option in fields(PieceSettings)), "pattern()")
         base = piece_settings or PieceSettings(
             tolerance=self.tolerance,
-            thickness=self.thickness,
-            k_factor=self.k_factor,
-            grain=self.grain,
+            thickness=self.stock.thickness,
+            k_factor=self.stock.k_factor,
+            grain=self.stock.grain,
+            surface_side=self.stock.surface_side,
         )
         return pattern_of_strips([self], replace(base, **options))
 

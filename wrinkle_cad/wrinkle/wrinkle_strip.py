@@ -11,6 +11,7 @@ from wrinkle_cad.options.option import options_of
 from wrinkle_cad.options.signature import takes_options_of
 
 from .found_strip import found_between
+from .grain import Stock
 from .options import StripArguments
 from .strip_findings import unused_findings
 from .triangulated_strip import TriangulatedStrip
@@ -67,9 +68,7 @@ class WrinkleStrip(TriangulatedStrip):
             name=chosen.name,
             color=chosen.color,
             surface=chosen.surface,
-            thickness=chosen.thickness,
-            k_factor=chosen.k_factor,
-            grain=chosen.grain,
+            stock=Stock(chosen.thickness, chosen.k_factor, chosen.grain, chosen.surface_side),
             findings=(
                 *given_p.findings,
                 *given_q.findings,

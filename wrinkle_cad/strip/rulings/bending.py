@@ -52,6 +52,23 @@ def radius_along(sheet: Sheet, pieces: Sequence[Piece]) -> Floats:
     return radius
 
 
+def bulge_along(sheet: Sheet) -> Floats:
+    """Returns (k - 1,) signs of the bend in each interval between rulings.
+
+    1 where the sheet is convex as seen along ``p' x (q - p)``, -1 where it is concave, 0 where it
+    does not turn.
+
+    Args:
+        sheet: the strip's tangent planes.
+    """
+    turned = np.zeros(len(sheet.p_across))
+    for normal in (sheet.p_normal, sheet.q_normal):
+        forward = crosses(sheet.direction[:-1], normal[:, 0])
+        known = normal[:, 0].any(axis=1) & normal[:, 1].any(axis=1)
+        turned += np.where(known, dots(normal[:, 1] - normal[:, 0], forward), 0.0)
+    return np.sign(turned)
+
+
 def _both_ends(sheet: Sheet, piece: Piece) -> Iterator[_End]:
     """What bends at P's end of a piece's rulings, and at Q's."""
     first, last = piece.first, piece.last

@@ -14,7 +14,7 @@ from wrinkle_cad.strip.curve.nearest import nearest_on_polyline
 from .nodes import Nodes, place_nodes
 from .pairing import corridor, pair_nodes
 from .rail_curve import RailCurve
-from .vectors import lengths
+from .vectors import crosses, lengths
 
 Floats = npt.NDArray[np.float64]
 Ints = npt.NDArray[np.int64]
@@ -28,11 +28,17 @@ MOST_NODES: Final = 2048
 """... but no more than this."""
 FINER: Final = 4
 """Each grid is so many times finer than the one before."""
-REACH_PER_BRIDGE: Final = 1.0
-"""Rulings are sought so far beside the bridges, in shares of a bridge's length: then 119 of 120
-random strips had one surface at four tolerances (with 0.25 some in twenty had two) ..."""
+REACH_PER_BRIDGE: Final = 1.5
+"""Rulings are sought so far beside the bridges, in shares of a bridge's length: then 120 of 120
+random strips had one surface at four tolerances (with 1.0 one in 120 had two, with 0.25 some in
+twenty) ..."""
 REACH_PER_EDGE: Final = 1.5
 """... or so many bank edges beside them, if that is more."""
+REACH_HELD: Final = 0.5
+"""A pairing that is held to the bridges is sought so far beside them."""
+MOST_OTHER_AREA: Final = 1.2
+"""A surface whose area is so many times that of the bridges', or that many times smaller, is that
+of another strip: a steep helicoid's rails also span half a cylinder of 1.3 times its area."""
 REACH_IN_NODES: Final = 4
 """On a finer grid: so many nodes of the coarser one beside the pairing found on that."""
 
@@ -87,7 +93,9 @@ def pairing_near(
     """Returns the pairing of least twist near the bridges of a triangulation.
 
     It is sought in a corridor around the bridges, and then around what was found until that stays
-    what it is: the bridges decide where it is sought, not what is found.
+    what it is: the bridges decide where it is sought, not what is found. Should that lead to a
+    surface of quite another area, it is that of another strip between the same rails, and the
+    pairing is held to the corridor around the bridges.
 
     Args:
         p: the curve.
@@ -97,22 +105,48 @@ def pairing_near(
         max_lean: rad; how far a ruling may lean from the shortest crossing.
     """
     arcs = (p.arc_at(bridges[0]), q.arc_at(bridges[1]))
-    reach = REACH_PER_BRIDGE * lengths(q.point_at(bridges[1]) - p.point_at(bridges[0]))
+    ends = (p.point_at(bridges[0]), q.point_at(bridges[1]))
+    bridge = lengths(ends[1] - ends[0])
+    edges = np.zeros_like(bridge)
     for arc in arcs:
         edge = np.diff(arc)
         edge = np.maximum(np.concatenate(([0.0], edge)), np.concatenate((edge, [0.0])))
-        reach = np.maximum(reach, REACH_PER_EDGE * edge)
+        edges = np.maximum(edges, REACH_PER_EDGE * edge)
     nodes = (place_nodes(p, spacing), place_nodes(q, spacing))
-    found = _paired(nodes, arcs, reach, spacing, BENDING, max_lean)
+    found = _paired(
+        nodes, arcs, np.maximum(edges, REACH_PER_BRIDGE * bridge), spacing, BENDING, max_lean
+    )
+    found = _settled(found, nodes, spacing, max_lean)
+    area = _area(*ends)
+    if area / MOST_OTHER_AREA <= _area(*_ends(found)) <= area * MOST_OTHER_AREA:
+        return found
+    return _paired(nodes, arcs, np.maximum(edges, REACH_HELD * bridge), spacing, BENDING, max_lean)
+
+
+def _settled(
+    found: Pairing, nodes: tuple[Nodes, Nodes], spacing: float, max_lean: float | None
+) -> Pairing:
+    """The pairing that is the best in the corridor around itself."""
     for _ in range(MOST_ROUNDS):
         last = found
-        arcs = _arcs(last)
-        ruling = last.q.point[last.pairs[:, 1]] - last.p.point[last.pairs[:, 0]]
-        reach = REACH_PER_BRIDGE * lengths(ruling)
-        found = _paired(nodes, arcs, reach, spacing, BENDING, max_lean)
+        start, end = _ends(last)
+        reach = REACH_PER_BRIDGE * lengths(end - start)
+        found = _paired(nodes, _arcs(last), reach, spacing, BENDING, max_lean)
         if np.array_equal(last.pairs, found.pairs):
             break
     return found
+
+
+def _ends(pairing: Pairing) -> tuple[Floats, Floats]:
+    """Points on P and on Q of each pair."""
+    return pairing.p.point[pairing.pairs[:, 0]], pairing.q.point[pairing.pairs[:, 1]]
+
+
+def _area(start: Floats, end: Floats) -> float:
+    """The area in mm2 of the triangles between segments in order."""
+    across, along, back = end - start, np.diff(start, axis=0), np.diff(end, axis=0)
+    twice = lengths(crosses(along, across[1:])) + lengths(crosses(back, across[:-1]))
+    return float(np.cumsum(twice)[-1]) / 2.0 if len(twice) else 0.0
 
 
 def finer_pairing(

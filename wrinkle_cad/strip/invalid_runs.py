@@ -1,6 +1,6 @@
-"""The gap list: where along a strip it is not developable, how far, and why.
+"""Runs of bridges that are not locally convex: figures of the search, not of the sheet.
 
-Kinds of gap:
+Kinds of run:
 
 - `inflection`: the bending changes sign there and the sampling cannot show the ruling; no defect.
 - `twist`: the rails' tangents differ along the rulings, and the surface turns with them.
@@ -12,7 +12,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
-from typing import Any, Final, Literal
+from typing import Any, Literal
 
 import numpy as np
 import numpy.typing as npt
@@ -29,22 +29,9 @@ Floats = npt.NDArray[np.float64]
 Bools = npt.NDArray[np.bool_]
 Kind = Literal["inflection", "twist", "fan end"]
 
-ADVICE: Final[dict[Kind, str]] = {
-    "inflection": "Nothing to change: the bend changes sides here. A finer tolerance narrows it.",
-    "twist": (
-        "The rails turn against each other here: let their waves run in step, make them lower, or"
-        " bring the rails closer together."
-    ),
-    "fan end": (
-        "The strip runs into a fan or crease here: smooth the rail on the side that moves, or move"
-        " its end so that no long fan is needed."
-    ),
-}
-"""What to do about each kind of gap."""
-
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Gap:
+class InvalidRun:
     """A run of invalid interior bridges between valid ones.
 
     Example:
@@ -52,7 +39,7 @@ class Gap:
         >>> x = np.linspace(0.0, 40.0, 9)
         >>> p = np.stack((x, 0 * x, 2 * np.sin(x / 4)), axis=1)
         >>> q = np.stack((x, 0 * x + 15, 2 * np.cos(x / 3)), axis=1)
-        >>> [(gap.kind, gap.first, gap.last) for gap in find_gaps(triangulate(p, q))]
+        >>> [(run.kind, run.first, run.last) for run in find_invalid_runs(triangulate(p, q))]
         [('inflection', 7, 7), ('inflection', 12, 12)]
     """
 
@@ -71,14 +58,14 @@ class Gap:
     angle_defect: float
     """rad, in (-pi, pi]; the largest angle from P's tangent to Q's, seen along one of its bridges;
     positive if right-handed about the direction from P to Q. Turning one rail's
-    tangent by as much closes the gap there."""
+    tangent by as much makes it locally convex."""
     twist: float
     """rad, not negative; the largest twist of its bridges."""
     kind: Kind
     """Why its bridges are invalid."""
 
 
-def find_gaps(triangulation: Triangulation) -> tuple[Gap, ...]:
+def find_invalid_runs(triangulation: Triangulation) -> tuple[InvalidRun, ...]:
     """Returns the runs of invalid interior bridges, in order along the strip.
 
     A run of a closed strip may go on past its last bridge, which is its first one again; its
@@ -87,19 +74,19 @@ def find_gaps(triangulation: Triangulation) -> tuple[Gap, ...]:
     Example:
         >>> from wrinkle_cad.strip import triangulate
         >>> flat = triangulate([[0, 0, 0], [1, 0, 0], [2, 0, 0]], [[0, 1, 0], [1, 1, 0], [2, 1, 0]])
-        >>> find_gaps(flat)
+        >>> find_invalid_runs(flat)
         ()
     """
     count = len(triangulation.steps)
     if triangulation.is_closed:
-        return _gaps_around(triangulation, count)
+        return _runs_around(triangulation, count)
     invalid = ~triangulation.valid
     invalid[[0, -1]] = False
-    return _gaps_in(triangulation, invalid)
+    return _runs_in(triangulation, invalid)
 
 
-def _gaps_around(closed: Triangulation, count: int) -> tuple[Gap, ...]:
-    """The gaps of a closed strip, looked for from a valid bridge on, around to it again."""
+def _runs_around(closed: Triangulation, count: int) -> tuple[InvalidRun, ...]:
+    """The runs of a closed strip, looked for from a valid bridge on, around to it again."""
     valid = np.flatnonzero(closed.valid[:-1])
     first = int(valid[0]) if len(valid) else 0
     # Three turns, so that every bridge of the one that is looked at has both its neighbours.
@@ -114,22 +101,22 @@ def _gaps_around(closed: Triangulation, count: int) -> tuple[Gap, ...]:
 
     return tuple(
         replace(
-            gap,
-            first=(gap.first - count + first) % count,
-            last=(gap.first - count + first) % count + gap.last - gap.first,
-            start=placed(gap.start),
-            end=placed(gap.end),
+            run,
+            first=(run.first - count + first) % count,
+            last=(run.first - count + first) % count + run.last - run.first,
+            start=placed(run.start),
+            end=placed(run.end),
         )
-        for gap in _gaps_in(around, invalid)
+        for run in _runs_in(around, invalid)
     )
 
 
-def _gaps_in(triangulation: Triangulation, invalid: Bools) -> tuple[Gap, ...]:
+def _runs_in(triangulation: Triangulation, invalid: Bools) -> tuple[InvalidRun, ...]:
     edges = np.flatnonzero(np.diff(invalid)) + 1
     shares = [_shares(triangulation, rail) for rail in (0, 1)]
     defect = _defects(triangulation)
     return tuple(
-        _gap(triangulation, int(first), int(stop), shares, defect)
+        _run(triangulation, int(first), int(stop), shares, defect)
         for first, stop in zip(edges[::2], edges[1::2], strict=True)
     )
 
@@ -179,9 +166,9 @@ def _defects(triangulation: Triangulation) -> Floats:
     return angle
 
 
-def _gap(
+def _run(
     triangulation: Triangulation, first: int, stop: int, shares: list[Floats], defect: Floats
-) -> Gap:
+) -> InvalidRun:
     here = slice(first, stop)
     start, end = triangulation.bridges[first], triangulation.bridges[stop - 1]
     twist = float(triangulation.twist[here].max())
@@ -191,7 +178,7 @@ def _gap(
         kind = "inflection"
     elif twist > TWIST_PER_DEFECT * abs(worst):
         kind = "twist"
-    return Gap(
+    return InvalidRun(
         first=first,
         last=stop - 1,
         start=(int(start[0]), int(start[1])),
@@ -204,17 +191,16 @@ def _gap(
     )
 
 
-def gap_entry(gap: Gap) -> dict[str, Any]:
-    """A gap as plain values for the JSON: lengths in mm, angles in degrees."""
+def run_entry(run: InvalidRun) -> dict[str, Any]:
+    """A run as plain values for the JSON: lengths in mm, angles in degrees."""
     return {
-        "kind": gap.kind,
-        "first_bridge": gap.first,
-        "last_bridge": gap.last,
-        "start": list(gap.start),
-        "end": list(gap.end),
-        "p_length_mm": gap.p_length,
-        "q_length_mm": gap.q_length,
-        "angle_defect_deg": math.degrees(gap.angle_defect),
-        "twist_deg": math.degrees(gap.twist),
-        "advice": ADVICE[gap.kind],
+        "kind": run.kind,
+        "first_bridge": run.first,
+        "last_bridge": run.last,
+        "start": list(run.start),
+        "end": list(run.end),
+        "p_length_mm": run.p_length,
+        "q_length_mm": run.q_length,
+        "angle_defect_deg": math.degrees(run.angle_defect),
+        "twist_deg": math.degrees(run.twist),
     }

@@ -7,7 +7,7 @@ import pytest
 
 from tests.strip import exact_strips
 from tests.strip.exact_strips import stack
-from wrinkle_cad.strip import Triangulation, covered_lengths, find_gaps, triangulate
+from wrinkle_cad.strip import Triangulation, covered_lengths, find_invalid_runs, triangulate
 
 
 def lengths_of(points: np.ndarray) -> float:
@@ -20,27 +20,27 @@ def hyperbolic_paraboloid(slope: float) -> Triangulation:
     return triangulate(p, q, criteria=("length",))
 
 
-def test_gaps_are_the_runs_of_invalid_interior_bridges() -> None:
+def test_invalid_runs_are_the_runs_of_invalid_interior_bridges() -> None:
     strip = exact_strips.wrinkled(3).sampled(1e-3)
     found = triangulate(strip.p, strip.q)
-    gaps = find_gaps(found)
-    numbers = [k for gap in gaps for k in range(gap.first, gap.last + 1)]
+    runs = find_invalid_runs(found)
+    numbers = [k for run in runs for k in range(run.first, run.last + 1)]
     assert numbers == (np.flatnonzero(~found.valid[1:-1]) + 1).tolist()
-    assert all(a.last + 1 < b.first for a, b in pairwise(gaps))
-    for gap in gaps:
-        assert gap.start == tuple(found.bridges[gap.first])
-        assert gap.end == tuple(found.bridges[gap.last])
+    assert all(a.last + 1 < b.first for a, b in pairwise(runs))
+    for run in runs:
+        assert run.start == tuple(found.bridges[run.first])
+        assert run.end == tuple(found.bridges[run.last])
 
 
-def test_lengths_of_all_gaps_are_those_of_all_invalid_bridges() -> None:
+def test_lengths_of_all_runs_are_those_of_all_invalid_bridges() -> None:
     strip = exact_strips.wrinkled(3).sampled(1e-3)
     found = triangulate(strip.p, strip.q)
-    gaps = find_gaps(found)
+    runs = find_invalid_runs(found)
     invalid = ~found.valid
     invalid[[0, -1]] = False
     p_length, q_length = covered_lengths(found, invalid)
-    assert sum(gap.p_length for gap in gaps) == pytest.approx(p_length)
-    assert sum(gap.q_length for gap in gaps) == pytest.approx(q_length)
+    assert sum(run.p_length for run in runs) == pytest.approx(p_length)
+    assert sum(run.q_length for run in runs) == pytest.approx(q_length)
 
 
 def test_all_bridges_together_cover_both_rails() -> None:
@@ -51,33 +51,33 @@ def test_all_bridges_together_cover_both_rails() -> None:
     assert covered_lengths(found, np.zeros(len(found.bridges), dtype=bool)) == (0.0, 0.0)
 
 
-def test_a_developable_strip_has_no_gap() -> None:
+def test_a_developable_strip_has_no_invalid_run() -> None:
     strip = exact_strips.convex_cone(1).sampled(1e-3)
-    assert find_gaps(triangulate(strip.p, strip.q)) == ()
+    assert find_invalid_runs(triangulate(strip.p, strip.q)) == ()
 
 
 @pytest.mark.parametrize("family", exact_strips.WAVY)
-def test_gaps_of_developables_are_inflections(family) -> None:
+def test_invalid_runs_of_developables_are_inflections(family) -> None:
     strip = family(1).sampled(1e-3)
-    kinds = {gap.kind for gap in find_gaps(triangulate(strip.p, strip.q))}
+    kinds = {run.kind for run in find_invalid_runs(triangulate(strip.p, strip.q))}
     assert kinds == {"inflection"}
 
 
 @pytest.mark.parametrize("slope", [0.3, -0.3])
 def test_a_hyperbolic_paraboloid_is_twisted_with_the_sign_of_its_slope(slope: float) -> None:
-    gaps = find_gaps(hyperbolic_paraboloid(slope))
-    assert {gap.kind for gap in gaps} == {"twist"}
+    runs = find_invalid_runs(hyperbolic_paraboloid(slope))
+    assert {run.kind for run in runs} == {"twist"}
     # Seen along the first rulings, from P to Q, the tangent of Q is turned by atan(slope).
-    assert max(abs(gap.angle_defect) for gap in gaps) == pytest.approx(np.arctan(0.3), rel=0.02)
-    assert {np.sign(gap.angle_defect) for gap in gaps} == {-np.sign(slope)}
+    assert max(abs(run.angle_defect) for run in runs) == pytest.approx(np.arctan(0.3), rel=0.02)
+    assert {np.sign(run.angle_defect) for run in runs} == {-np.sign(slope)}
 
 
 def test_a_fan_whose_apex_leaves_the_plane_is_called_so() -> None:
     kinds = set()
     for seed in range(4):
         strip = exact_strips.wrinkled(seed).sampled(1e-3)
-        for gap in find_gaps(triangulate(strip.p, strip.q)):
-            kinds.add(gap.kind)
-            if gap.kind == "fan end":
-                assert gap.twist <= 0.5 * abs(gap.angle_defect)
+        for run in find_invalid_runs(triangulate(strip.p, strip.q)):
+            kinds.add(run.kind)
+            if run.kind == "fan end":
+                assert run.twist <= 0.5 * abs(run.angle_defect)
     assert "fan end" in kinds

@@ -1,0 +1,145 @@
+"""What would help a strip that is not developable or misses a limit: one change at a time."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any, Final
+
+from wrinkle_cad import settings
+from wrinkle_cad.errors import WrinkleError
+
+from .job import Job
+
+if TYPE_CHECKING:
+    from wrinkle_cad.cad.exchange.choose import Chosen
+    from wrinkle_cad.report.limits import Limits
+    from wrinkle_cad.wrinkle.triangulated_strip import TriangulatedStrip
+
+FINER: Final = 0.25
+"""The tolerance is tried at this share of itself, ..."""
+LOWER: Final = 0.5
+"""... heights at this, ..."""
+WIDER: Final = 1.5
+"""... margin and fade at this."""
+LONGEST_FADE: Final = 0.5
+_FIGURES: Final = (
+    "max_strain_percent",
+    "inner_bend_radius_mm",
+    "bend_radius_along_grain_mm",
+    "bend_radius_across_grain_mm",
+    "max_twist_deg",
+    "developable_share",
+)
+
+
+@dataclass(frozen=True, slots=True)
+class Lever:
+    """One change of a job's settings."""
+
+    words: str
+    """As flags."""
+    changes: Mapping[str, Any]
+    """The settings that differ."""
+
+
+def levers_of(job: Job, *, on_upper: bool) -> Iterator[Lever]:
+    """Returns the changes that exist for a job: those of the waves first.
+
+    Args:
+        job: its settings.
+        on_upper: whether its strips are stitched into an upper.
+
+    Example:
+        >>> from pathlib import Path
+        >>> job = Job(input=Path("shoe.step"), waves=5, height=3, margin=4)
+        >>> [lever.words for lever in levers_of(job, on_upper=True)]
+        ['--height 1.5', '--margin 6', '--fade 0.45', '--tolerance 0.0125', '--price none']
+    """
+    if on_upper and job.height is not None:
+        yield _lever("height", tuple(LOWER * height for height in job.height))
+    margin = job.margin
+    if on_upper and margin is None and job.height is not None:
+        margin = max(abs(height) for height in job.height)
+    if on_upper and margin:
+        yield _lever("margin", WIDER * margin)
+    if on_upper and job.height is not None:
+        if job.fade < LONGEST_FADE:
+            yield _lever("fade", min(LONGEST_FADE, round(WIDER * job.fade, 6)))
+        if job.phase_deg[0] != job.phase_deg[1]:
+            yield _lever("phase_deg", (job.phase_deg[0], job.phase_deg[0]))
+    yield _lever("tolerance", FINER * job.tolerance)
+    if job.price is not None and job.criteria == settings.CRITERIA and job.search == "global":
+        yield _lever("price", None)
+
+
+def add_trials(job: Job, chosen: Chosen, entries: Sequence[dict[str, Any]], limits: Limits) -> None:
+    """Adds to the entries of ``strips`` that want help what was tried on each of them.
+
+    Args:
+        job: the settings.
+        chosen: the rails and the upper.
+        entries: of ``strips`` in the JSON, judged.
+        limits: what the strips are judged by.
+    """
+    wanting = {entry["name"]: entry for entry in entries if _wants_help(entry)}
+    if not wanting:
+        return
+    for lever in levers_of(job, on_upper=chosen.upper is not None):
+        try:
+            strips = _strips_of(replace(job, **lever.changes), chosen, set(wanting))
+            found = _figures_of(strips, limits)
+        except WrinkleError as error:
+            found = {name: {"failed": str(error)} for name in wanting}
+        for name, figures in found.items():
+            if name in wanting:
+                wanting[name]["trials"].append({"change": lever.words, **figures})
+
+
+def _lever(name: str, value: Any) -> Lever:
+    return Lever(f"--{name.replace('_', '-')} {_written(value)}", {name: value})
+
+
+def _written(value: Any) -> str:
+    if value is None:
+        return "none"
+    if isinstance(value, tuple):
+        parts = [_written(part) for part in value]
+        return parts[0] if len(set(parts)) == 1 else ",".join(parts)
+    return f"{value:g}"
+
+
+def _wants_help(entry: Mapping[str, Any]) -> bool:
+    return entry["state"] != "developable" or entry["passed"] is False
+
+
+def _strips_of(job: Job, chosen: Chosen, names: set[str]) -> Sequence[TriangulatedStrip]:
+    if chosen.upper is not None:
+        from .wrinkled_upper import wrinkle_upper
+
+        upper = wrinkle_upper(job, chosen)
+        return (*upper.strips, *upper.bands)
+    from .parts import strip_name, strip_of
+
+    return [
+        strip_of(job, given.p.shape, given.q.shape, given.name)
+        for given in chosen.strips
+        if strip_name(job, given.name) in names
+    ]
+
+
+def _figures_of(strips: Sequence[TriangulatedStrip], limits: Limits) -> dict[str, dict[str, Any]]:
+    from wrinkle_cad.report.judging import largest_crease
+    from wrinkle_cad.report.verdict import judge
+
+    entries = [strip.report_without_gaps.as_json() for strip in strips]
+    verdict = judge(entries, limits)
+    return {
+        entry["name"]: {
+            "state": entry["state"],
+            "passed": said.passed,
+            "max_crease_deg": largest_crease(entry),
+            **{key: entry[key] for key in _FIGURES},
+        }
+        for entry, said in zip(entries, verdict.strips, strict=True)
+    }
