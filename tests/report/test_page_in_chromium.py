@@ -380,3 +380,54 @@ def test_a_script_that_is_not_the_pages_own_does_not_run(
     open_page(browser, tmp_path / "smuggled.html", smuggled)
     assert browser.execute_script("return window.pwned") is None
     assert any("Content Security Policy" in message for message in errors(browser))
+
+
+def crease_rails() -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    bent = np.array([(0.0, 0.0), (40.0, 0.0), (70.0, 30.0)])
+    return np.insert(bent, 2, 0.0, axis=1), np.insert(bent, 2, 20.0, axis=1)
+
+
+def stretch_rails() -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    x = np.linspace(0.0, 100.0, 21)
+    return np.stack((x, 0 * x, 0 * x), axis=1), np.stack((x, 0 * x + 20.0, 0.53 * x), axis=1)
+
+
+def three_wrinkles() -> list[StripView]:
+    names = ("front", "middle", "back")
+    strips = [view_of(wavy_rails(offset=30.0 * at), name) for at, name in enumerate(names)]
+    bands = [
+        view_of(cylinder_rails(), f"{name} band {rail}", role="band")
+        for name in names
+        for rail in "PQ"
+    ]
+    return [*strips, *bands]
+
+
+FIRST_SCREENS = {
+    "one": lambda: [view_of(wavy_rails())],
+    "three": three_wrinkles,
+    "creased": lambda: [view_of(crease_rails())],
+    "stretched": lambda: [view_of(stretch_rails())],
+}
+
+
+@pytest.mark.parametrize(("width", "height"), [(1366, 768), (390, 844)])
+@pytest.mark.parametrize("name", FIRST_SCREENS)
+def test_verdict_picture_and_figures_stand_on_the_first_screen(
+    browser: webdriver.Chrome, tmp_path: Path, name: str, width: int, height: int
+) -> None:
+    views = FIRST_SCREENS[name]()
+    html = write_page(summary_of(views), views, dome(40))
+    open_page(browser, tmp_path / "first.html", html, width=width, height=height)
+    script = "return arguments[0].getBoundingClientRect().bottom"
+
+    def bottom(element: WebElement) -> float:
+        return float(browser.execute_script(script, element))
+
+    headline = browser.find_element(By.CSS_SELECTOR, ".verdict .headline")
+    tiles = browser.find_elements(By.CSS_SELECTOR, ".tiles .tile")
+    titles = [tile.find_element(By.TAG_NAME, "dt").text for tile in tiles[:3]]
+    assert titles == ["Largest strain", "Sharpest crease", "Developable share"]
+    assert max(map(bottom, (headline, *tiles))) <= height
+    assert bottom(canvas(browser, "space")) <= height
+    assert "band" not in browser.find_element(By.CSS_SELECTOR, ".said").text.split("Bands:")[0]

@@ -54,8 +54,9 @@ def write_page(
         InputError: the body's faces point at vertices that do not exist.
     """
     numbers = Numbers(summary)
-    main = node("main", *_header(numbers), verdict_panel(numbers), figures_panel(numbers))
-    main.append(space_panel(strips, body))
+    said = node("div", verdict_panel(numbers), figures_panel(numbers), class_="said")
+    first = node("div", said, space_panel(strips, body), class_="first")
+    main = node("main", *_header(numbers), first)
     if len(strips) > 1:
         main.append(tabs([view.name for view in strips]))
     for index, view in enumerate(strips):

@@ -37,9 +37,9 @@ def figures_panel(numbers: Numbers) -> Element:
     tiles = (
         ("Largest strain", [numbers.show(f"{entry}/max_strain_percent", "%", 3), p95]),
         ("Sharpest crease", _crease(numbers, entry)),
+        ("Developable share", [numbers.show(f"{entry}/developable_share", "", 3)]),
         ("Smallest bend radius", _radius(numbers, entry)),
         ("Largest twist", [numbers.show(f"{entry}/max_twist_deg", "°", 2)]),
-        ("Developable share", [numbers.show(f"{entry}/developable_share", "", 3)]),
         ("Area of the pattern", [numbers.show(f"{entry}/area_pattern_mm2", "mm²", 1)]),
     )
     shown = node(
@@ -109,16 +109,16 @@ def space_panel(strips: Sequence[StripView], body: MeshView | None) -> Element:
         node("div", node("h2", "In space"), node("p", _IDLE, class_="readout"), class_="head"),
         node(
             "div",
+            node("canvas", class_="space", aria_label="3-D view: drag to turn, wheel to zoom"),
+            node("p", "This browser shows no 3-D graphics (WebGL).", class_="failure"),
+            class_="stage",
+        ),
+        node(
+            "div",
             node("fieldset", *colors, class_="segments", aria_label="Color by"),
             node("fieldset", node("legend", "Show"), *layers),
             node("button", "Whole view", type="button", class_="reset"),
             class_="toolbar",
-        ),
-        node(
-            "div",
-            node("canvas", class_="space", aria_label="3-D view: drag to turn, wheel to zoom"),
-            node("p", "This browser shows no 3-D graphics (WebGL).", class_="failure"),
-            class_="stage",
         ),
         _space_legend(),
         class_="card space-panel",
@@ -139,7 +139,7 @@ def _space_legend() -> Element:
     keys = [
         _key("valid", "locally convex bridge"),
         _key("inflection", "inflection ruling"),
-        _key("invalid", "not developable"),
+        _key("invalid", "not locally convex"),
     ]
     for key in keys:
         key.set("data-for", validity["data_for"])
@@ -234,7 +234,7 @@ def _curves_card(numbers: Numbers, index: int, view: StripView) -> Element:
         keys.append(least)
     if view.local is not None:
         keys.append(_key("local", "local search", "dash"))
-    keys += [_key("inflection", "inflection", "box"), _key("invalid", "not developable", "box")]
+    keys += [_key("inflection", "inflection", "box"), _key("invalid", "not locally convex", "box")]
     return node(
         "div",
         node("h2", "Along the strip", class_="head"),

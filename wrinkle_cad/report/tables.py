@@ -35,7 +35,7 @@ def verdict_panel(numbers: Numbers) -> Element:
     panel = node(
         "section",
         node("div", _SIGN[_tone(said)], class_="sign", aria_hidden="true"),
-        node("p", said["headline"], class_="headline"),
+        node("p", _headline(said), class_="headline"),
         node("p", said["meaning"], class_="meaning"),
         _limits(said),
         class_=f"card verdict {_tone(said)}",
@@ -51,6 +51,15 @@ def verdict_panel(numbers: Numbers) -> Element:
     if said["bands"]:
         panel.append(node("p", said["bands"], class_="bands note"))
     return panel
+
+
+def _headline(said: Mapping[str, Any]) -> str:
+    """The verdict's; of a single strip without limits the state only: its figures stand below."""
+    leading = [strip for strip in said["strips"] if strip["role"] != "band"] or said["strips"]
+    headline = str(said["headline"])
+    if said["passed"] is None and len(leading) == 1:
+        return headline.split(". ")[0].removesuffix(".") + "."
+    return headline
 
 
 def _tone(said: Mapping[str, Any]) -> str:

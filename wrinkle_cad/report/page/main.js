@@ -25,7 +25,7 @@
     if (strip.pieces.length) Report.pattern(strip, section.querySelector("canvas.pattern"), layersOf(section));
   });
 
-  const STATES = { valid: "locally convex", inflection: "inflection", invalid: "not developable here" };
+  const STATES = { valid: "locally convex", inflection: "inflection", invalid: "not locally convex" };
   function words({ strip, bridge }) {
     const { p, q, at, count, valid } = strip.chosen;
     const ends = bridge === 0 || bridge === count - 1;
