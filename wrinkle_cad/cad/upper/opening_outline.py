@@ -38,6 +38,9 @@ FEET_PER_LENGTH: Final = 1e-3
 JUMP: Final = 4.0
 """Feet further apart than so many steps of the curve have jumped."""
 
+MARGIN_HELD: Final = 0.1
+"""A side must leave its rail by so much of the margin."""
+
 STANDING_PER_LENGTH: Final = 1e-8
 """Feet that follow each other within this share of their whole length are one point."""
 
@@ -146,8 +149,14 @@ def across_rail(rail: Rail, other: Rail, names: tuple[str, str]) -> Floats:
     lateral = unit(np.cross(rail.feet.normals, rail.tangents))
     gap = np.linalg.norm(rail.points[:, None] - other.points[None], axis=2)
     nearest = gap.argmin(axis=1)
-    offset = ((other.points[nearest] - rail.points) * lateral).sum(axis=1)
+    away = other.points[nearest] - rail.points
+    offset = (away * lateral).sum(axis=1)
     width = float(np.abs(offset).max())
+    if width <= settings.WIDTH_PER_LENGTH_MIN * rail.length:
+        # On a sharp edge the normal is that of the face beyond it: the other rail shows the way.
+        lateral = unit(away - (away * rail.tangents).sum(axis=1)[:, None] * rail.tangents)
+        offset = (away * lateral).sum(axis=1)
+        width = float(np.abs(offset).max())
     if width <= settings.WIDTH_PER_LENGTH_MIN * rail.length:
         raise InputError(
             f"Rails {names[0]} and {names[1]} enclose no area: they are {width:.3g} mm apart at"
@@ -194,10 +203,21 @@ def faded_margin(shares: Floats, margin: float, fade: float) -> Floats:
 
 
 def side_of(upper: UpperFaces, rail: Rail, toward: Floats, margin: Floats, name: str) -> Side:
-    """Returns the side of an outline along a rail, ``margin`` (k,) mm outside of it."""
+    """Returns the side of an outline along a rail, ``margin`` (k,) mm outside of it.
+
+    Raises:
+        InputError: the upper ends at the rail, or turns down there.
+    """
     if not (margin > 0.0).any():
         return Side(name, rail.points, rail.feet.normals, toward, rail.feet.faces)
     feet = upper.feet(rail.points - margin[:, None] * toward)
+    moved = float(np.linalg.norm(feet.points - rail.points, axis=1).max())
+    if moved < MARGIN_HELD * margin.max():
+        raise InputError(
+            f"Rail {name.upper()} runs along an edge of the upper, so that the opening cannot reach"
+            f" beyond it: of the margin of {margin.max():.3g} mm {moved:.2g} mm are left. Take no"
+            " margin, or move the rail off the edge."
+        )
     if rail.is_ring:
         feet = _closed_up(feet)
     points, normals = feet.points.copy(), feet.normals.copy()

@@ -57,6 +57,18 @@ class Split:
     """Per opening: all edges along its outline, in order along each side."""
 
 
+@dataclass(frozen=True, slots=True, eq=False)
+class _WayIn:
+    """The way from an edge into a piece beside it."""
+
+    point: Floats
+    """(3,) mm, the edge's middle."""
+    into: Floats
+    """(3,) unit vector along the piece, away from the edge."""
+    inward: Floats
+    """(3,) unit vector along the upper, into the opening."""
+
+
 class _Outlines:
     """The sides of all openings, ready to be asked for the nearest one to a point."""
 
@@ -99,21 +111,28 @@ def sorted_pieces(
         InputError: an opening lies in another.
     """
     flat = [piece for group in pieces for piece in group]
+    face_of = [i for i, group in enumerate(pieces) for _ in group]
     votes: list[dict[int, list[float]]] = [{} for _ in flat]
     cuts: dict[int, tuple[int, CutEdge]] = {}
     joined, outlines = ShapeIndex(), _Outlines(plans)
     neighbours: dict[int, list[int]] = {}
     parted: list[dict[int, list[int]]] = [{} for _ in plans]
+    ways: dict[int, list[_WayIn]] = {}
     for i, piece in enumerate(flat):
         for edge in oriented_edges(piece):
             found = section.find(edge)
             if found < 0:
                 neighbours.setdefault(joined.add(edge), []).append(i)
             elif edge.Orientation() in (TopAbs_FORWARD, TopAbs_REVERSED):
-                of, cut, inward = _cut_edge(edge, piece, outlines)
+                of, cut, way = _cut_edge(edge, piece, outlines)
                 cuts[found] = of, cut
-                votes[i].setdefault(of, []).append(inward)
+                ways.setdefault(found, []).append(way)
                 parted[of].setdefault(found, []).append(i)
+    for found, (of, cut) in cuts.items():
+        beside = parted[of].get(found, [])
+        inward = _inward(ways[found], [face_of[i] for i in beside], plans[of], cut.side)
+        for i, vote in zip(beside, inward, strict=False):
+            votes[i].setdefault(of, []).append(vote)
     inside = [-1] * len(flat)
     for k in range(len(plans)):
         # Only its own outline parts an opening from what lies around it.
@@ -186,8 +205,8 @@ def oriented_edges(face: TopoDS_Face) -> list[TopoDS_Edge]:
 
 def _cut_edge(
     edge: TopoDS_Edge, piece: TopoDS_Face, outlines: _Outlines
-) -> tuple[int, CutEdge, float]:
-    """Returns whose it is, its place on the outline, how far the piece lies inward of it."""
+) -> tuple[int, CutEdge, _WayIn]:
+    """Returns whose it is, its place on the outline, and the way from it into the piece."""
     point, tangent, normal = edge_frame(edge, piece)
     if edge.Orientation() == TopAbs_REVERSED:
         tangent = -tangent
@@ -196,7 +215,24 @@ def _cut_edge(
     j = min(int(at), len(side.points) - 2)
     along = float(dot(tangent, side.points[j + 1] - side.points[j])) > 0.0
     forward = edge if along else as_edge(edge.Reversed())
-    return of, CutEdge(forward, i, at), float(dot(material, side.inward[round(at)]))
+    return of, CutEdge(forward, i, at), _WayIn(point, material, side.inward[round(at)])
+
+
+def _inward(
+    ways: Sequence[_WayIn], faces: Sequence[int], plan: OpeningPlan, side: int
+) -> list[float]:
+    """Returns for each piece beside an edge whether it lies inward of it: positive if so.
+
+    An outline may run along an edge between two faces of the upper, a sharp one too: of the two
+    pieces that one lies inside through which the way leads towards the other rail.
+    """
+    if len(set(faces)) < 2 or side > 1:
+        return [float(dot(way.into, way.inward)) for way in ways]
+    rail = plan.rails[1 - side].points
+    away = rail - ways[0].point
+    target = away[(away**2).sum(axis=1).argmin()]
+    shares = [float(dot(way.into, target)) for way in ways]
+    return [2.0 * share - sum(shares) for share in shares]
 
 
 def edge_frame(edge: TopoDS_Edge, face: TopoDS_Face) -> tuple[Floats, Floats, Floats]:

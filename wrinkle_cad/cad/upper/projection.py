@@ -103,7 +103,9 @@ class UpperFaces:
                 if surface.Gap() > 2.0 * previous_gap + settings.CONFUSION:
                     found = surface.ValueOfUV(at, settings.CONFUSION)
             previous, previous_gap = found, surface.Gap()
-            if previous_gap < best[j] and inside.Perform(found) != TopAbs_OUT:
+            # On an edge of two faces a row of points stays with the first of them.
+            nearer = previous_gap < best[j] - settings.CONFUSION
+            if nearer and inside.Perform(found) != TopAbs_OUT:
                 best[j], owner[j] = previous_gap, i
                 uv[j] = found.X(), found.Y()
 
