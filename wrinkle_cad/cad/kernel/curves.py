@@ -4,21 +4,22 @@ from __future__ import annotations
 
 import numpy as np
 from numpy.typing import NDArray
+from OCP.Approx import Approx_Curve3d
 from OCP.BRep import BRep_Tool
 from OCP.BRepAdaptor import BRepAdaptor_Curve
-from OCP.BRepBuilderAPI import BRepBuilderAPI_Copy
-from OCP.BRepLib import BRepLib
-from OCP.Geom import Geom_BSplineCurve, Geom_TrimmedCurve
+from OCP.Geom import Geom_BSplineCurve, Geom_Circle, Geom_Line, Geom_TrimmedCurve
+from OCP.GeomAbs import GeomAbs_C1, GeomAbs_Circle, GeomAbs_Line
 from OCP.GeomConvert import GeomConvert
 from OCP.TopAbs import TopAbs_REVERSED
 from OCP.TopoDS import TopoDS_Edge
 
+from wrinkle_cad import settings
 from wrinkle_cad.errors import CadError
 
 from .steps import kernel_step
-from .topology import as_edge
 
 Floats = NDArray[np.float64]
+PIECES_MAX, DEGREE_MAX = 1000, 9
 
 
 def edge_curve(edge: TopoDS_Edge) -> Geom_BSplineCurve:
@@ -30,11 +31,10 @@ def edge_curve(edge: TopoDS_Edge) -> Geom_BSplineCurve:
         CadError: the edge has no curve (it is degenerated), or it cannot be converted.
     """
     with kernel_step("take the curve of an edge"):
-        edge = _with_curve(edge)
-        adaptor = BRepAdaptor_Curve(edge)
-        first, last = adaptor.FirstParameter(), adaptor.LastParameter()
-        curve = BRep_Tool.Curve_s(edge, first, last)
-        spline = GeomConvert.CurveToBSplineCurve_s(Geom_TrimmedCurve(curve, first, last))
+        if BRep_Tool.Degenerated_s(edge):
+            found = "the edge is a single point. Pass a curve."
+            raise CadError("take the curve of an edge", found)
+        spline = _spline(BRepAdaptor_Curve(edge), edge)
         if spline.IsPeriodic():
             spline.SetNotPeriodic()
         if edge.Orientation() == TopAbs_REVERSED:
@@ -42,16 +42,29 @@ def edge_curve(edge: TopoDS_Edge) -> Geom_BSplineCurve:
     return spline
 
 
-def _with_curve(edge: TopoDS_Edge) -> TopoDS_Edge:
-    if BRep_Tool.Degenerated_s(edge):
-        raise CadError("take the curve of an edge", "the edge is a single point. Pass a curve.")
-    if BRep_Tool.IsGeometric_s(edge) and BRep_Tool.Curve_s(edge, 0.0, 0.0) is not None:
-        return edge
-    own = as_edge(BRepBuilderAPI_Copy(edge).Shape())
-    if not BRepLib.BuildCurve3d_s(own):
-        found = "it has no 3-D curve and none could be built. Export it with one."
-        raise CadError("take the curve of an edge", found)
-    return own
+def _spline(adaptor: BRepAdaptor_Curve, edge: TopoDS_Edge) -> Geom_BSplineCurve:
+    first, last = adaptor.FirstParameter(), adaptor.LastParameter()
+    if adaptor.Is3DCurve():
+        curve = BRep_Tool.Curve_s(edge, first, last)
+    elif adaptor.GetType() == GeomAbs_Line:
+        curve = Geom_Line(adaptor.Line())
+    elif adaptor.GetType() == GeomAbs_Circle:
+        curve = Geom_Circle(adaptor.Circle())
+    else:
+        return _on_surface(adaptor)
+    return GeomConvert.CurveToBSplineCurve_s(Geom_TrimmedCurve(curve, first, last))
+
+
+def _on_surface(adaptor: BRepAdaptor_Curve) -> Geom_BSplineCurve:
+    """Returns the curve of an edge that has one in the parameters of its surface only."""
+    found = Approx_Curve3d(adaptor, settings.CONFUSION, GeomAbs_C1, PIECES_MAX, DEGREE_MAX)
+    if not found.IsDone() or found.MaxError() > 10.0 * settings.CONFUSION:
+        raise CadError(
+            "take the curve of an edge",
+            "it has a curve on its surface only, which no curve in space follows to"
+            f" {10.0 * settings.CONFUSION:.0e} mm. Export it with a curve in space.",
+        )
+    return found.Curve()
 
 
 def edge_ends(edge: TopoDS_Edge) -> tuple[Floats, Floats]:
