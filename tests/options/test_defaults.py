@@ -19,6 +19,7 @@ KEYS = {"version": "dxf_version", "seconds": "nest_seconds", "schema": "step_sch
 NOT_THE_JOBS = {
     "name": "a job's is its file's",
     "material": "a pattern's is a text on its pieces, a job's is looked up",
+    "join": "carve joins faces of the upper that lie apart, a job the curves of a rail",
     "margin": "a job knows the height of the waves, and carve does not",
 }
 LEAST = {

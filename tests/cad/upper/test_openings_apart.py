@@ -80,6 +80,13 @@ def test_openings_that_share_a_line_or_a_corner_touch(other: tuple[Edge, Edge]) 
         carve_all(plate(), [lines(0, 0, 100, 20), other])
 
 
+def test_openings_that_only_their_margins_bring_together_overlap() -> None:
+    pairs = [lines(0, 0, 100, 20), lines(0, 21, 100, 20)]
+    assert len(carve_all(plate(), pairs)) == 2
+    with pytest.raises(InputError, match=r"overlap by up to 3 mm"):
+        carve_all(plate(), pairs, margin=2.0, fade=0.1)
+
+
 def test_an_opening_inside_another_is_named_as_such() -> None:
     pairs = [lines(3, 1, 30, 6), lines(0, 0, 100, 20)]
     with pytest.raises(
