@@ -296,7 +296,7 @@ SIDE = [[0.0, 1, 0], [1, 1, 0], [2, 1, 0]]
 def test_what_is_no_rail_is_refused(p: npt.ArrayLike, message: str) -> None:
     with pytest.raises(InputError, match=message):
         triangulate(p, SIDE)
-    with pytest.raises(InputError, match=message.replace("Rail P", "Directrix Q")):
+    with pytest.raises(InputError, match=message.replace("Rail P", "Rail Q")):
         triangulate(SIDE, p)
 
 
