@@ -172,7 +172,11 @@ def test_closing_lets_idle_workers_go(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize(
     ("timeout_s", "memory_gib", "complaint"),
-    [(0.0, 4.0, "--timeout"), (float("nan"), 4.0, "--timeout"), (1.0, 1.9, "--memory cannot be 1.9 GiB: give 2 to")],
+    [
+        (0.0, 4.0, "--timeout"),
+        (float("nan"), 4.0, "--timeout"),
+        (1.0, 1.9, "--memory cannot be 1.9 GiB: give 2 to"),
+    ],
 )
 def test_limits_out_of_range_are_refused(
     timeout_s: float, memory_gib: float, complaint: str
