@@ -15,6 +15,8 @@ from collections.abc import Callable, Iterable
 from pathlib import Path
 from typing import Final
 
+from wrinkle_cad.errors import ExportError
+
 PART_SUFFIX: Final = ".part"
 _BACKUP_SUFFIX: Final = ".kept"
 
@@ -31,6 +33,26 @@ def write_atomically(path: Path, content: bytes) -> None:
             is left behind.
     """
     replace_together([(write_aside(path, content), path)])
+
+
+def write_export(path: Path, form: str, content: bytes) -> None:
+    """Writes what a user asked for as a file; see ``write_atomically``.
+
+    Args:
+        path: the file; its folder must exist.
+        form: its format, for the message.
+        content: every byte of it.
+
+    Raises:
+        ExportError: it cannot be written; what stood there before is untouched.
+    """
+    try:
+        write_atomically(path, content)
+    except OSError as error:
+        reason = error.strerror or type(error).__name__
+        raise ExportError(
+            path, form, f"{reason}. Nothing was written: free some space or choose another folder."
+        ) from error
 
 
 def write_aside(path: Path, content: bytes) -> Path:

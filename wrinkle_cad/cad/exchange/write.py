@@ -31,7 +31,7 @@ from wrinkle_cad.cad.kernel.steps import kernel_step
 from wrinkle_cad.cad.kernel.topology import faces_of
 from wrinkle_cad.cad.kernel.versions import ShapeMap
 from wrinkle_cad.errors import CadError, ExportError
-from wrinkle_cad.files.atomic import write_atomically
+from wrinkle_cad.files.atomic import write_export
 from wrinkle_cad.files.names import one_line
 
 from .face_styles import carried_over, styles_in
@@ -80,11 +80,9 @@ def write_step(
     header = Header(path.name, timestamp)
     try:
         content = step_bytes(parts, header, schema=schema)
-        write_atomically(path, content)
     except CadError as error:
         raise ExportError(path, "STEP", error.message) from error
-    except OSError as error:
-        raise _disk_error(path, "STEP", error) from error
+    write_export(path, "STEP", content)
 
 
 def step_bytes(
@@ -209,11 +207,9 @@ def write_stl(
     """
     try:
         content = stl_bytes(shape, tolerance=tolerance)
-        write_atomically(path, content)
     except CadError as error:
         raise ExportError(path, "STL", error.message) from error
-    except OSError as error:
-        raise _disk_error(path, "STL", error) from error
+    write_export(path, "STL", content)
 
 
 def stl_bytes(shape: TopoDS_Shape, *, tolerance: float = settings.TOLERANCE) -> bytes:
@@ -233,10 +229,3 @@ def stl_bytes(shape: TopoDS_Shape, *, tolerance: float = settings.TOLERANCE) -> 
     if not len(triangles):
         raise CadError("mesh the shape", "the CAD kernel made no triangles. Check the shape.")
     return binary_stl(points, triangles)
-
-
-def _disk_error(path: Path, form: str, error: OSError) -> ExportError:
-    reason = error.strerror or type(error).__name__
-    return ExportError(
-        path, form, f"{reason}. Nothing was written: free some space or choose another folder."
-    )

@@ -9,8 +9,7 @@ from pathlib import Path
 
 import numpy as np
 
-from wrinkle_cad.errors import ExportError
-from wrinkle_cad.files.atomic import write_atomically
+from wrinkle_cad.files.atomic import write_export
 from wrinkle_cad.pattern.piece.piece import PatternPiece
 
 COLUMNS = (
@@ -51,7 +50,4 @@ def write_bend_table(path: Path, pieces: Sequence[PatternPiece]) -> None:
     Raises:
         ExportError: the file cannot be written.
     """
-    try:
-        write_atomically(path, bend_table(pieces).encode("utf-8"))
-    except OSError as error:
-        raise ExportError(path, "CSV", f"{error.strerror}. Check the folder.") from error
+    write_export(path, "CSV", bend_table(pieces).encode("utf-8"))

@@ -21,8 +21,8 @@ from ezdxf.addons import gerber_D6673, r12export
 from ezdxf.document import Drawing
 
 from wrinkle_cad import settings
-from wrinkle_cad.errors import ExportError, Finding, InputError
-from wrinkle_cad.files.atomic import write_atomically
+from wrinkle_cad.errors import Finding, InputError
+from wrinkle_cad.files.atomic import write_export
 from wrinkle_cad.pattern.piece.piece import PatternPiece
 from wrinkle_cad.pattern.piece.stacking import laid_out
 from wrinkle_cad.settings import Curves, DxfVersion
@@ -148,10 +148,7 @@ def write_dxf(
         timestamp=timestamp,
         sheet=sheet,
     )
-    try:
-        write_atomically(path, made.content)
-    except OSError as error:
-        raise ExportError(path, "DXF", f"{error.strerror}. Check the folder.") from error
+    write_export(path, "DXF", made.content)
     return made.findings
 
 

@@ -19,8 +19,8 @@ from typing import Any, Final
 import numpy as np
 
 from wrinkle_cad import settings
-from wrinkle_cad.errors import ExportError, Finding, InputError
-from wrinkle_cad.files.atomic import write_atomically
+from wrinkle_cad.errors import Finding, InputError
+from wrinkle_cad.files.atomic import write_export
 from wrinkle_cad.pattern.piece.piece import Floats, PatternPiece
 
 from .drawing import Drawing, draw
@@ -127,10 +127,7 @@ def write_pdf(
         ExportError: the file cannot be written.
     """
     made = pdf_file(pieces, profile=profile)
-    try:
-        write_atomically(path, made.content)
-    except OSError as error:
-        raise ExportError(path, "PDF", f"{error.strerror}. Check the folder.") from error
+    write_export(path, "PDF", made.content)
     return made.findings
 
 

@@ -10,8 +10,8 @@ from typing import Any, Final
 
 import numpy as np
 
-from wrinkle_cad.errors import ExportError, InputError
-from wrinkle_cad.files.atomic import write_atomically
+from wrinkle_cad.errors import InputError
+from wrinkle_cad.files.atomic import write_export
 from wrinkle_cad.files.regular import read_regular
 from wrinkle_cad.pattern.piece.piece import (
     Bends,
@@ -43,10 +43,7 @@ def write_pieces(path: Path, pieces: Sequence[PatternPiece]) -> None:
     Raises:
         ExportError: the file cannot be written.
     """
-    try:
-        write_atomically(path, pieces_text(pieces).encode("ascii"))
-    except OSError as error:
-        raise ExportError(path, "pieces", f"{error.strerror}. Check the folder.") from error
+    write_export(path, "pieces", pieces_text(pieces).encode("ascii"))
 
 
 def read_pieces(path: Path) -> tuple[PatternPiece, ...]:

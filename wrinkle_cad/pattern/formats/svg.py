@@ -15,8 +15,8 @@ import numpy as np
 from ezdxf.colors import aci2rgb
 
 from wrinkle_cad import settings
-from wrinkle_cad.errors import ExportError, Finding, InputError
-from wrinkle_cad.files.atomic import write_atomically
+from wrinkle_cad.errors import Finding, InputError
+from wrinkle_cad.files.atomic import write_export
 from wrinkle_cad.files.names import one_line
 from wrinkle_cad.pattern.piece.piece import Floats, PatternPiece
 from wrinkle_cad.pattern.piece.stacking import laid_out
@@ -79,10 +79,7 @@ def write_svg(
         ExportError: the file cannot be written.
     """
     content = svg_bytes(pieces, profile=profile)
-    try:
-        write_atomically(path, content)
-    except OSError as error:
-        raise ExportError(path, "SVG", f"{error.strerror}. Check the folder.") from error
+    write_export(path, "SVG", content)
     texts = [text for piece in pieces for text in piece.texts]
     return tuple(
         finding for text in texts for finding in text_changed("text in the SVG", text, _plain(text))
