@@ -127,7 +127,7 @@ def assert_best(kept: list[tuple[dict, float]], one: dict | None, criteria, cost
         assert brute_force.is_close(part, best), (*note, part, least)
 
 
-@pytest.mark.parametrize("seed", seeds(100, default=8))
+@pytest.mark.parametrize("seed", seeds(100, default=3))
 @pytest.mark.parametrize("kind", KINDS)
 def test_the_best_small_strip_that_keeps_a_constraint_is_found(kind: str, seed: int) -> None:
     seed = makes_a_strip(range(300))[seed]
@@ -159,7 +159,7 @@ def makes_a_closed_strip(p: np.ndarray, q: np.ndarray) -> bool:
     return True
 
 
-@pytest.mark.parametrize("seed", seeds(100, default=6))
+@pytest.mark.parametrize("seed", seeds(100, default=3))
 @pytest.mark.parametrize("kind", KINDS)
 def test_the_best_closed_strip_that_keeps_a_constraint_is_found(kind: str, seed: int) -> None:
     p, q = next(pair for pair in map(ring, range(seed, 9999, 1000)) if makes_a_closed_strip(*pair))
@@ -186,7 +186,7 @@ def test_the_best_closed_strip_that_keeps_a_constraint_is_found(kind: str, seed:
         assert_best(kept, every[key], criteria, cost, (seed, criteria, price))
 
 
-@pytest.mark.parametrize("seed", seeds(100, default=12))
+@pytest.mark.parametrize("seed", seeds(100, default=2))
 @pytest.mark.parametrize("kind", KINDS)
 def test_the_local_search_keeps_a_constraint_wherever_a_strip_does(kind: str, seed: int) -> None:
     seed = makes_a_strip(range(300))[seed]

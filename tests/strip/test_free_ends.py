@@ -68,7 +68,7 @@ def path_of(found: Triangulation) -> tuple[tuple[int, int], ...]:
     return tuple(map(tuple, (found.bridges + found.first_samples).tolist()))
 
 
-@pytest.mark.parametrize("seed", seeds(100, default=14))
+@pytest.mark.parametrize("seed", seeds(100, default=6))
 def test_no_triangulation_of_a_shortened_strip_is_better(seed: int) -> None:
     seed = makes_a_strip(range(300))[seed]
     p, q = (rail.tolist() for rail in small_strip(seed))
