@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -147,6 +148,15 @@ class Opening:
     def rail_q(self) -> Edge | Wire:
         """Q as it lies on the upper."""
         return _curve(tuple(curve_edges(self.rail_q_curve)), "Q")
+
+
+def one_per_body(openings: Sequence[Opening]) -> list[Opening]:
+    """Returns the first of the openings that were cut at once, for each body in turn."""
+    kept = [openings[0]]
+    for opening in openings[1:]:
+        if not opening.body_shape.IsSame(kept[-1].body_shape):
+            kept.append(opening)
+    return kept
 
 
 def _curve(edges: tuple[TopoDS_Edge, ...], label: str) -> Any:

@@ -46,9 +46,19 @@ class OpeningPlan:
         return [(start, end), (start, end), (0.0, 0.0), (0.0, 0.0)][: len(self.sides)]
 
     @property
+    def points(self) -> Floats:
+        """(k, 3) mm: the whole outline, side by side."""
+        return np.vstack([side.points for side in self.sides])
+
+    @property
     def title(self) -> str:
         """What messages call it."""
         return f"the opening of {self.request.name}" if self.request.name else "the opening"
+
+    @property
+    def heading(self) -> str:
+        """The same at the start of a sentence."""
+        return f"T{self.title[1:]}"
 
 
 def plan_opening(faces: UpperFaces, upper: TopoDS_Shape, request: CarveRequest) -> OpeningPlan:

@@ -24,7 +24,7 @@ def check_openings_apart(plans: Sequence[OpeningPlan]) -> None:
     Raises:
         InputError: two do; it names both, the place and how far.
     """
-    boxes = [_box(plan) for plan in plans]
+    boxes = [(plan.points.min(axis=0), plan.points.max(axis=0)) for plan in plans]
     for (i, first), (j, second) in combinations(enumerate(plans), 2):
         gap = np.maximum(boxes[i][0] - boxes[j][1], boxes[j][0] - boxes[i][1])
         if float(gap.max()) > settings.OPENINGS_APART:
@@ -32,15 +32,10 @@ def check_openings_apart(plans: Sequence[OpeningPlan]) -> None:
         _check_pair(first, second)
 
 
-def _box(plan: OpeningPlan) -> tuple[Floats, Floats]:
-    points = np.vstack([side.points for side in plan.sides])
-    return points.min(axis=0), points.max(axis=0)
-
-
 def _check_pair(first: OpeningPlan, second: OpeningPlan) -> None:
     depths = [_deepest(first, second), _deepest(second, first)]
     at, depth = max(depths, key=lambda found: found[1])
-    pair = f"{_with_capital(first.title)} and {second.title}"
+    pair = f"{first.heading} and {second.title}"
     if depth > settings.OPENINGS_APART:
         raise InputError(
             f"{pair} overlap by up to {depth:.3g} mm, deepest at {_place(at)}. Each wrinkle needs a"
@@ -115,7 +110,3 @@ def _nearest(first: OpeningPlan, second: OpeningPlan) -> tuple[Floats, float]:
 
 def _place(at: Floats) -> str:
     return f"({at[0]:.1f}, {at[1]:.1f}, {at[2]:.1f}) mm"
-
-
-def _with_capital(text: str) -> str:
-    return text[0].upper() + text[1:]

@@ -152,18 +152,17 @@ def sorted_pieces(
 
 
 def _nested(plans: Sequence[OpeningPlan], first: int, second: int) -> InputError:
-    inner, outer = sorted((plans[first], plans[second]), key=lambda plan: _span(plan))
+    inner, outer = sorted((plans[first], plans[second]), key=_span)
     x, y, z = inner.rails[0].points[len(inner.rails[0].points) // 2]
     return InputError(
-        f"{inner.title[0].upper()}{inner.title[1:]}, at ({x:.1f}, {y:.1f}, {z:.1f}) mm, lies"
+        f"{inner.heading}, at ({x:.1f}, {y:.1f}, {z:.1f}) mm, lies"
         f" inside {outer.title}. Each wrinkle needs a place of its own: move the rails of one out"
         " of the other."
     )
 
 
 def _span(plan: OpeningPlan) -> float:
-    points = np.vstack([side.points for side in plan.sides])
-    return norm(np.ptp(points, axis=0))
+    return norm(np.ptp(plan.points, axis=0))
 
 
 def _decide(votes: Sequence[Sequence[float]], joints: Sequence[Sequence[int]]) -> list[bool]:

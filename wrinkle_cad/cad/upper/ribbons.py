@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 from OCP.BRepBuilderAPI import BRepBuilderAPI_MakeFace
 from OCP.BRepExtrema import BRepExtrema_DistShapeShape
+from OCP.Geom import Geom_BSplineSurface
 from OCP.TopoDS import TopoDS_Face
 
 from wrinkle_cad import settings
@@ -44,14 +45,22 @@ def ribbon(
     for first, extra in ((True, overrun[0]), (False, overrun[1])):
         if extra > 0.0:
             points, normals = _extended(points, normals, first, extra)
-    arc = arc_lengths(points)
-    rows = np.stack((points - height * normals, points + height * normals), axis=1)
-    spline = cubic_through(arc, rows.reshape(len(rows), 6))
+    surface = _standing(arc_lengths(points), _rows(points, normals, height), height)
+    return BRepBuilderAPI_MakeFace(surface, settings.CONFUSION).Face()
+
+
+def _rows(points: Floats, normals: Floats, height: float) -> Floats:
+    """(k, 6) mm: where a ribbon ends on either side of the upper, for each point."""
+    return np.hstack((points - height * normals, points + height * normals))
+
+
+def _standing(arc: Floats, rows: Floats, height: float) -> Geom_BSplineSurface:
+    """The ruled surface between the two curves through the rows."""
+    spline = cubic_through(arc, rows)
     knots, counts = np.unique(spline.knots, return_counts=True)
-    surface = make_surface(
+    return make_surface(
         spline.poles.reshape(-1, 2, 3), (knots, (0.0, 2.0 * height)), (counts, (2, 2)), (3, 1)
     )
-    return BRepBuilderAPI_MakeFace(surface, settings.CONFUSION).Face()
 
 
 def _extended(points: Floats, normals: Floats, first: bool, extra: float) -> tuple[Floats, Floats]:
@@ -83,12 +92,7 @@ def _started_apart(side: Side, faces: Sequence[TopoDS_Face]) -> tuple[Floats, Fl
 
 def _closed_ribbon(points: Floats, normals: Floats, height: float) -> TopoDS_Face:
     arc = arc_lengths(points)
-    rows = np.stack((points - height * normals, points + height * normals), axis=1)
-    spline = cubic_through(*around(arc, rows.reshape(len(rows), 6)))
-    knots, counts = np.unique(spline.knots, return_counts=True)
-    whole = make_surface(
-        spline.poles.reshape(-1, 2, 3), (knots, (0.0, 2.0 * height)), (counts, (2, 2)), (3, 1)
-    )
+    whole = _standing(*around(arc, _rows(points, normals, height)), height)
     whole.Segment(0.0, float(arc[-1]), 0.0, 2.0 * height)
     for row in (1, 2):
         whole.SetPole(whole.NbUPoles(), row, whole.Pole(1, row))

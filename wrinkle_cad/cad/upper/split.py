@@ -49,8 +49,7 @@ def split_faces(faces: UpperFaces, plans: Sequence[OpeningPlan]) -> Split:
                 edges = _drawn(faces.faces, side, over)
                 drawn += edges or ()
                 tools += edges or [ribbon(side, plan.height, over, faces.faces)]
-            points = np.vstack([side.points for side in plan.sides])
-            near.update(faces.near(points, 2.0 * plan.height))
+            near.update(faces.near(plan.points, 2.0 * plan.height))
         splitter = BRepAlgoAPI_Splitter()
         splitter.SetArguments(shape_list([faces.faces[i] for i in sorted(near)]))
         splitter.SetTools(shape_list(tools))

@@ -25,7 +25,7 @@ from .bands import Band, StripLike, check_beside, make_band
 from .border_check import compared_border
 from .carve import carve_shapes
 from .end_fans import end_fan
-from .opening import Opening
+from .opening import Opening, one_per_body
 from .seam_angle import SeamAngle, seam_angles
 from .sew import Sewn, sew
 
@@ -272,7 +272,7 @@ def _stitched(
         free_length_before_mm=border.length_before,
         free_length_after_mm=border.length_after,
         max_edge_tolerance_mm=_checked_tolerance(sewn.shell, upper),
-        area_balance_mm2=sum(opening.area_balance for opening in _one_per_body(chained)),
+        area_balance_mm2=sum(opening.area_balance for opening in one_per_body(chained)),
         area_mm2=chained[-1].areas[1]
         + sum(face_areas(sewn.faces[parts.count(BODY) :], relative_error=settings.AREA_BALANCE)),
         is_valid=True,
@@ -281,14 +281,6 @@ def _stitched(
     )
     parted = tuple((name, tuple(held)) for name, held in grouped.items())
     return Stitched(sewn.shell, report, parted, openings[0].source)
-
-
-def _one_per_body(openings: Sequence[Opening]) -> list[Opening]:
-    kept = [openings[0]]
-    for opening in openings[1:]:
-        if not opening.body_shape.IsSame(kept[-1].body_shape):
-            kept.append(opening)
-    return kept
 
 
 def _gaps_bridged(opening: Opening) -> float:

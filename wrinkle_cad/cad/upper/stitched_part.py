@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from itertools import pairwise
 
 from OCP.TopoDS import TopoDS_Face
 
@@ -12,7 +11,7 @@ from wrinkle_cad.cad.exchange.shapes import FaceStyle, NamedShape, Part
 from wrinkle_cad.cad.kernel.shape_index import ShapeIndex
 from wrinkle_cad.cad.kernel.topology import faces_of
 
-from .opening import Opening
+from .opening import Opening, one_per_body
 from .stitch import BODY, Stitched
 
 
@@ -49,10 +48,9 @@ def stitched_part(
 
 def _origin_of_body(openings: Sequence[Opening]) -> tuple[int, ...]:
     """Returns for each face of the last body which face of the upper it is, or is part of."""
-    origin = openings[0].face_origin
-    for before, opening in pairwise(openings):
-        if opening.body_shape.IsSame(before.body_shape):
-            continue
+    first, *later = one_per_body(openings)
+    origin = first.face_origin
+    for opening in later:
         origin = tuple(origin[i] for i in opening.face_origin)
     return origin
 
