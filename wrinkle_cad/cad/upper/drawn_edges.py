@@ -7,6 +7,7 @@ parted, since its curve in parameters jumps there.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Final
 
 import numpy as np
@@ -46,10 +47,20 @@ def drawn_edges(face: TopoDS_Face, side: Side) -> list[TopoDS_Edge] | None:
     arc = arc_lengths(side.points)
     line = BSpline(*cubic_through(arc, parameters.led_through_poles(side.points)), 3)
     pieces = parameters.pieces(line, arc)
-    if pieces is None or parameters.largest_gap(arc, line) > DRAWN_EDGE_GAP:
+    if pieces is None or _largest_gap(parameters, pieces, line, arc) > DRAWN_EDGE_GAP:
         return None
     edges = [_drawn_edge(face, parameters, line, piece) for piece in pieces]
     return None if None in edges else [edge for edge in edges if edge is not None]
+
+
+def _largest_gap(
+    parameters: FaceParameters, pieces: Sequence[Piece], line: BSpline, arc: Floats
+) -> float:
+    """Returns mm: how far the side's own points are from their feet; between them the line sags."""
+    at, uv = np.concatenate([p.at for p in pieces]), np.vstack([p.uv for p in pieces])
+    own = np.isin(at, arc)
+    apart = parameters.points(uv[own]) - line(at[own])
+    return float(np.linalg.norm(apart, axis=1).max())
 
 
 def _drawn_edge(

@@ -82,19 +82,7 @@ class FaceParameters:
 
     def feet_near(self, points: Floats, guesses: Floats) -> Floats:
         """Returns the (k, 2) parameters of the feet of (k, 3) points near (k, 2) guesses."""
-        found = []
-        for point, guess in zip(points.tolist(), guesses.tolist(), strict=True):
-            at = self._surface.NextValueOfUV(gp_Pnt2d(*guess), gp_Pnt(*point), settings.CONFUSION)
-            found.append(self._unwrapped(np.array([at.X(), at.Y()]), np.array(guess)))
-        return np.array(found)
-
-    def largest_gap(self, at: Floats, curve: Curve) -> float:
-        """Returns mm: how far a curve is from the surface at (k,) of its parameters."""
-        gaps = []
-        for point in curve(at).tolist():
-            self._surface.ValueOfUV(gp_Pnt(*point), settings.CONFUSION)
-            gaps.append(self._surface.Gap())
-        return float(max(gaps))
+        return np.array([self._next_foot(*pair) for pair in zip(points, guesses, strict=True)])
 
     def led_through_poles(self, points: Floats) -> Floats:
         """Returns (k, 3) points of a curve, those near a pole that it passes too closely moved.
@@ -177,13 +165,16 @@ class FaceParameters:
         return np.array([place for place, _ in found]), np.array([uv for _, uv in found])
 
     def _foot(self, curve: Curve, at: float, before: Floats | None) -> tuple[float, Floats]:
-        point = gp_Pnt(*curve(np.array([at]))[0].tolist())
-        if before is None:
-            found = self._surface.ValueOfUV(point, settings.CONFUSION)
-            return at, np.array([found.X(), found.Y()])
-        guess = gp_Pnt2d(*before.tolist())
-        found = self._surface.NextValueOfUV(guess, point, settings.CONFUSION)
-        return at, self._unwrapped(np.array([found.X(), found.Y()]), before)
+        point = curve(np.array([at]))[0]
+        if before is not None:
+            return at, self._next_foot(point, before)
+        found = self._surface.ValueOfUV(gp_Pnt(*point.tolist()), settings.CONFUSION)
+        return at, np.array([found.X(), found.Y()])
+
+    def _next_foot(self, point: Floats, guess: Floats) -> Floats:
+        near = gp_Pnt2d(*guess.tolist())
+        found = self._surface.NextValueOfUV(near, gp_Pnt(*point.tolist()), settings.CONFUSION)
+        return self._unwrapped(np.array([found.X(), found.Y()]), guess)
 
     def _unwrapped(self, uv: Floats, near: Floats) -> Floats:
         """Returns parameters moved by whole periods to be nearest to others."""
