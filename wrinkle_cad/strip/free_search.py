@@ -20,16 +20,13 @@ from .bars import Bars, bar_row
 from .compiled import compiled
 from .convexity import judge_row
 from .folding import StepCosts, cost_row, new_costs
+from .global_search import weighted_fold
 from .objective import (
     AREA,
-    BENDING,
     DEGENERATE,
     FLAT_INVALID,
-    FOLD_BACK,
-    INVALID,
     LENGTH,
     TIE,
-    Part,
     Weights,
 )
 from .sightlines import BEFORE_P, VIEW_ROWS, bank_lengths, look_along, padded_banks
@@ -108,13 +105,6 @@ def _fill_row(
 
 
 @compiled
-def _fold(part: Part, costs: StepCosts, invalid: float, row: int, j: int) -> float:
-    counts = part[FOLD_BACK] * costs.fold_backs[row, j]
-    counts += part[INVALID] * (invalid * costs.bent[row, j])
-    return float(counts + part[BENDING] * costs.bending[row, j])
-
-
-@compiled
 def _is_less(weights: Weights, first: Floats, second: Floats) -> bool:
     for number in range(len(weights)):
         a, b = first[number], second[number]
@@ -168,7 +158,7 @@ def _leave(
         triangle = part[DEGENERATE] * row.costs.degenerate[1 + 2 * step, j]
         triangle += part[AREA] * row.costs.area[step, j]
         own = part[LENGTH] * row.seen[0, j] + part[FLAT_INVALID] * invalid
-        own += _fold(part, row.costs, invalid, later, j)
+        own += weighted_fold(part, row.costs, invalid, later, j)
         cost[number] = own + ahead[number] + triangle
 
 

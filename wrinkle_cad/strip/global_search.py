@@ -40,7 +40,7 @@ Floats = npt.NDArray[np.float64]
 
 
 @compiled
-def _fold_cost(part: Part, costs: StepCosts, invalid: float, row: int, j: int) -> float:
+def weighted_fold(part: Part, costs: StepCosts, invalid: float, row: int, j: int) -> float:
     """What one part of the cost says to the fold at bridge j, by the steps around it (row)."""
     back, bent = costs.fold_backs[row, j], costs.bent[row, j]
     counts = part[FOLD_BACK] * back + part[INVALID] * (invalid * bent)
@@ -63,8 +63,8 @@ def later_step(
     """
     for number in range(len(weights)):
         part = weights[number]
-        p_cost = to_end[0, number] + _fold_cost(part, costs, invalid, 2 * earlier, j)
-        q_cost = to_end[1, number] + _fold_cost(part, costs, invalid, 2 * earlier + 1, j)
+        p_cost = to_end[0, number] + weighted_fold(part, costs, invalid, 2 * earlier, j)
+        q_cost = to_end[1, number] + weighted_fold(part, costs, invalid, 2 * earlier + 1, j)
         if abs(p_cost - q_cost) > part[TIE] * (p_cost + q_cost):
             return 0 if p_cost < q_cost else 1
     return 0
@@ -120,7 +120,7 @@ def decide_row(
                 part = weights[number]
                 own = part[LENGTH] * view[0, j] + part[FLAT_INVALID] * invalid
                 if not is_end:
-                    fold = _fold_cost(part, costs, invalid, 2 * earlier + later, j)
+                    fold = weighted_fold(part, costs, invalid, 2 * earlier + later, j)
                     own += cost[later, number] + fold
                 if earlier == 0:
                     ahead[j, number] = own

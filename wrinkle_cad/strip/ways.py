@@ -19,7 +19,7 @@ from .curve.polyline import arc_lengths, row_lengths
 from .free_search import free_steps
 from .global_search import best_steps
 from .local_search import closed_local_steps, local_steps
-from .objective import free_weights_of, weights_of
+from .objective import Weights, free_weights_of, weights_of
 
 Floats = npt.NDArray[np.float64]
 Steps = npt.NDArray[np.int8]
@@ -144,17 +144,21 @@ def way_of(task: Task, constraints: Constraints, bars: Bars) -> Way:
     steps = best_steps(
         task.p,
         task.q,
-        weights_of(
-            task.criteria,
-            bridge_count=task.p.shape[0] + task.q.shape[0],
-            invalid_cost=task.invalid_cost,
-        ),
+        _weights(task),
         planarity=task.planarity,
         nothing=task.nothing,
         energy=task.energy,
         bars=bars,
     )
     return Way((0, 0), steps)
+
+
+def _weights(task: Task) -> Weights:
+    return weights_of(
+        task.criteria,
+        bridge_count=task.p.shape[0] + task.q.shape[0],
+        invalid_cost=task.invalid_cost,
+    )
 
 
 def _local(task: Task, bars: Bars) -> Steps:
@@ -179,11 +183,7 @@ def _way_around(task: Task, constraints: Constraints, bars: Bars) -> Way:
     found = closed_steps(
         task.p,
         task.q,
-        weights_of(
-            task.criteria,
-            bridge_count=task.p.shape[0] + task.q.shape[0],
-            invalid_cost=task.invalid_cost,
-        ),
+        _weights(task),
         planarity=task.planarity,
         nothing=task.nothing,
         energy=task.energy,
