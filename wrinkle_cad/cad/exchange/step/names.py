@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import re
 from collections import defaultdict
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Final, NamedTuple
 
@@ -82,9 +82,14 @@ def item_names(text: bytes) -> ItemNames:
         for reference in entity.references:
             holders[reference].append(number)
     marked = [number for number, entity in entities.items() if _MARKED.fullmatch(entity.keyword)]
+    above = {number: _above(number, entities, holders) for number in marked}
     return ItemNames(
-        {number: tuple(_candidates(number, entities, holders)) for number in marked},
-        frozenset(number for number in marked if _is_hidden(number, entities, holders)),
+        {number: tuple(_candidates(number, entities, above[number])) for number in marked},
+        frozenset(
+            number
+            for number in marked
+            if any(entities[holder].keyword == "INVISIBILITY" for holder in above[number])
+        ),
     )
 
 
@@ -107,7 +112,7 @@ def _entities(text: bytes) -> Iterator[tuple[int, _Entity]]:
 
 
 def _candidates(
-    number: int, entities: Mapping[int, _Entity], holders: Mapping[int, list[int]]
+    number: int, entities: Mapping[int, _Entity], above: Sequence[int]
 ) -> Iterator[Candidate]:
     """Yields the names of an item: its own, of what it consists of, of what holds it, of layers."""
     own = entities[number]
@@ -116,7 +121,6 @@ def _candidates(
     inner = {name for name in _inner_names(number, entities, _DEEPEST) if name}
     if len(inner) == 1:
         yield Candidate(inner.pop(), "curve")
-    above = _above(number, entities, holders)
     for pattern, word in (
         (f"{_CURVE}|{_SHELL}", ""),
         (_SET, "set"),
@@ -177,13 +181,6 @@ def _above(
         if group in entities and entities[group].keyword == "GROUP"
     ]
     return [*found, *groups]
-
-
-def _is_hidden(
-    number: int, entities: Mapping[int, _Entity], holders: Mapping[int, list[int]]
-) -> bool:
-    above = _above(number, entities, holders)
-    return any(entities[holder].keyword == "INVISIBILITY" for holder in above)
 
 
 def marked_text(text: bytes, names: ItemNames) -> bytes:

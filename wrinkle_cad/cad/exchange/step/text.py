@@ -65,17 +65,7 @@ def plain_text(content: bytes) -> bytes:
 
 def statements(text: bytes) -> Iterator[bytes]:
     """Yields each statement without comments, its strings emptied to ``''``, one blank at most."""
-    parts: list[bytes] = []
-    at = 0
-    for token in _TOKEN.finditer(text):
-        parts.append(text[at : token.start()])
-        at = token.end()
-        kind = text[token.start() : token.start() + 1]
-        if kind == b"'":
-            parts.append(b"''")
-        elif kind == b";":
-            yield b"".join(parts).strip()
-            parts.clear()
+    return (statement for statement, _ in quoted_statements(text))
 
 
 def quoted_statements(text: bytes) -> Iterator[tuple[bytes, list[bytes]]]:
