@@ -24,7 +24,7 @@ from wrinkle_cad.strip.curve.polyline import row_lengths
 from wrinkle_cad.strip.portable import dot
 
 from .directrix import Directrix
-from .feet import FOOT_STEPS, LOOKED_AT, foot_on, settled_foot
+from .feet import FOOT_STEPS, LOOKED_AT, foot_on, settled_foot, within
 from .trimming import part_of
 
 Floats = NDArray[np.float64]
@@ -206,22 +206,17 @@ def _squared_pair(p: Directrix, q: Directrix, at_p: float, at_q: float) -> tuple
         scale = own[0] * own[1] - mixed * mixed
         if abs(scale) <= 1e-14 * abs(own[0] * own[1]):
             break
-        at_p = _around(p, at_p - (off[0] * own[1] - off[1] * mixed) / scale)
-        at_q = _around(q, at_q - (off[1] * own[0] - off[0] * mixed) / scale)
+        at_p = within(p, at_p - (off[0] * own[1] - off[1] * mixed) / scale)
+        at_q = within(q, at_q - (off[1] * own[0] - off[0] * mixed) / scale)
     return found
 
 
 def _motion(rail: Directrix, at: Floats) -> tuple[Floats, Floats]:
     """(1, 3) each: velocity and acceleration."""
     step = 1e-5 * (rail.interval[1] - rail.interval[0])
-    ends = [np.array([_around(rail, float(at[0]) + way)]) for way in (-step, step)]
+    ends = [np.array([within(rail, float(at[0]) + way)]) for way in (-step, step)]
     acceleration = (rail.velocity_at(ends[1]) - rail.velocity_at(ends[0])) / (2.0 * step)
     return rail.velocity_at(at), acceleration
-
-
-def _around(rail: Directrix, at: float) -> float:
-    first, last = rail.interval
-    return first + (at - first) % (last - first)
 
 
 def started_at(directrix: Directrix, at: float) -> Directrix:

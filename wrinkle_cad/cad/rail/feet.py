@@ -48,7 +48,7 @@ def settled_foot(point: Floats, rail: Directrix, start: float) -> float:
             break
         step = float(dot(point[None] - rail.point_at(place), velocity)[0]) / speed2
         while True:
-            there = _inside(rail, at + step)
+            there = within(rail, at + step)
             nearer = _gap(point, rail, there)
             if nearer < gap or abs(step) <= settings.KNOT_GAP:
                 break
@@ -73,11 +73,12 @@ def _squared_foot(point: Floats, rail: Directrix, at: float) -> float:
         if speed2 == 0.0 or abs(along) >= best:
             break
         best, found = abs(along), at
-        at = _inside(rail, at + along / speed2)
+        at = within(rail, at + along / speed2)
     return found if best < np.inf else at
 
 
-def _inside(rail: Directrix, at: float) -> float:
+def within(rail: Directrix, at: float) -> float:
+    """Returns a parameter within a rail's interval: around a closed rail, else its nearest end."""
     first, last = rail.interval
     if rail.is_closed:
         return first + (at - first) % (last - first)
