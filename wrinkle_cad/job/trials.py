@@ -58,9 +58,7 @@ def levers_of(job: Job, *, on_upper: bool) -> Iterator[Lever]:
     """
     if on_upper and job.height is not None:
         yield _lever("height", tuple(LOWER * height for height in job.height))
-    margin = job.margin
-    if on_upper and margin is None and job.height is not None:
-        margin = max(abs(height) for height in job.height)
+    margin = job.margin_asked
     if on_upper and margin:
         yield _lever("margin", WIDER * margin)
     if on_upper and job.height is not None:
@@ -119,10 +117,10 @@ def _strips_of(job: Job, chosen: Chosen, names: set[str]) -> Sequence[Triangulat
 
         upper = wrinkle_upper(job, chosen)
         return (*upper.strips, *upper.bands)
-    from .parts import strip_name, strip_of
+    from .parts import rails_of, strip_name, strip_of
 
     return [
-        strip_of(job, given.p.shape, given.q.shape, given.name)
+        strip_of(job, *rails_of(job, given), given.name)
         for given in chosen.strips
         if strip_name(job, given.name) in names
     ]

@@ -170,13 +170,9 @@ def _outside(openings: Sequence[Opening]) -> tuple[NDArray[np.float64], NDArray[
 def _request(job: Job, given: StripInput) -> CarveRequest:
     from wrinkle_cad.cad.upper.carve import carve_request
 
-    margin = job.margin
-    if margin is None and job.height is not None:
-        # Bands as wide as the waves are high lie at 45 degrees; for drawn profiles ``carve`` sees.
-        margin = max(abs(height) for height in job.height)
     return carve_request(
         *rails_of(job, given),
-        margin=margin,
+        margin=job.margin_asked,
         fade=job.fade,
         allow_split=job.allow_split,
         tolerance=job.tolerance,

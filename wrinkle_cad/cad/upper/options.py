@@ -75,6 +75,13 @@ class WaveSettings:
         check_options(self)
         check_waves(self)
 
+    @property
+    def margin_asked(self) -> float | None:
+        """mm; without a margin the waves' height, so that bands lie at 45 degrees; or None."""
+        if self.margin is None and self.height is not None:
+            return max(abs(height) for height in self.height)
+        return self.margin
+
 
 def check_waves(chosen: WaveSettings, error: type[InputError] = InputError) -> None:
     """Raises an ``InputError`` when the waves' number is given without their height, or so."""
