@@ -2,12 +2,35 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 from .markup import Child, Element, node
 from .numbers import Numbers
 from .table import card, cell, strip_name, table
+
+
+Row = Callable[[Numbers, int, int, Mapping[str, Any]], Element]
+"""Makes a row of a table: of which strip, which of its items, and the item."""
+
+
+def _card(
+    numbers: Numbers,
+    key: str,
+    title: str,
+    columns: Sequence[tuple[str, bool]],
+    row: Row,
+    note: str,
+) -> Element | None:
+    """A card with a row for each item under a key of each strip; None without any."""
+    rows = [
+        row(numbers, at, number, item)
+        for at, entry in enumerate(numbers.get("/strips"))
+        for number, item in enumerate(entry[key])
+    ]
+    if not rows:
+        return None
+    return card(title, table(columns, rows), node("p", note, class_="note"))
 
 
 def gaps_card(numbers: Numbers) -> Element | None:
@@ -20,18 +43,11 @@ def gaps_card(numbers: Numbers) -> Element | None:
         ("Twist", True),
         ("What to do", False),
     )
-    rows = [
-        _gap_row(numbers, at, number, gap)
-        for at, entry in enumerate(numbers.get("/strips"))
-        for number, gap in enumerate(entry["gaps"])
-    ]
-    if not rows:
-        return None
     note = (
         "Stretches whose rulings twist: no developable surface lies there. Twist is positive if"
         " clockwise as seen from P to Q. Click a row to see its middle."
     )
-    return card("Where a sheet must give", table(columns, rows), node("p", note, class_="note"))
+    return _card(numbers, "gaps", "Where a sheet must give", columns, _gap_row, note)
 
 
 def _gap_row(numbers: Numbers, at: int, number: int, gap: Mapping[str, Any]) -> Element:
@@ -66,15 +82,8 @@ def trials_card(numbers: Numbers) -> Element | None:
         ("Bend radius", True),
         ("Twist", True),
     )
-    rows = [
-        _trial_row(numbers, at, number, trial)
-        for at, entry in enumerate(numbers.get("/strips"))
-        for number, trial in enumerate(entry["trials"])
-    ]
-    if not rows:
-        return None
     note = "Each change by itself, on this file; every other setting as it is."
-    return card("What was tried", table(columns, rows), node("p", note, class_="note"))
+    return _card(numbers, "trials", "What was tried", columns, _trial_row, note)
 
 
 def _trial_row(numbers: Numbers, at: int, number: int, trial: Mapping[str, Any]) -> Element:
@@ -107,19 +116,12 @@ def runs_card(numbers: Numbers) -> Element | None:
         ("Angle defect", True),
         ("Twist", True),
     )
-    rows = [
-        _run_row(numbers, at, number, run)
-        for at, entry in enumerate(numbers.get("/strips"))
-        for number, run in enumerate(entry["invalid_runs"])
-    ]
-    if not rows:
-        return None
     note = (
         "Runs of bridges at which the triangles are not those of a developable surface: figures of"
         " the search, which change with the tolerance. Click a row to see its middle."
     )
     title = "Bridges that are not locally convex"
-    return card(title, table(columns, rows), node("p", note, class_="note"))
+    return _card(numbers, "invalid_runs", title, columns, _run_row, note)
 
 
 def _run_row(numbers: Numbers, at: int, number: int, run: Mapping[str, Any]) -> Element:
