@@ -9,7 +9,6 @@ from .markup import Child, Element, node
 from .numbers import Numbers
 from .table import card, cell, strip_name, table
 
-
 Row = Callable[[Numbers, int, int, Mapping[str, Any]], Element]
 """Makes a row of a table: of which strip, which of its items, and the item."""
 

@@ -26,7 +26,7 @@ from wrinkle_cad.strip.places import place_text
 from wrinkle_cad.strip.portable import norm
 
 from .chain_order import chain_order
-from .drawn_edges import drawn_edges
+from .edges_as_drawn import edges_as_drawn
 
 Floats = NDArray[np.float64]
 
@@ -70,7 +70,7 @@ def chain_of(source: object, name: str, join: float = 0.0) -> Chain:
             occurs twice, or a gap.
         CadError: the kernel cannot convert an edge.
     """
-    edges = drawn_edges(source, name)
+    edges = edges_as_drawn(source, name)
     pieces = [_piece_of(edge) for edge in edges if not BRep_Tool.Degenerated_s(edge)]
     whole = [piece for piece in pieces if _size(piece.curve) > settings.CONFUSION]
     dropped, pieces = len(edges) - len(whole), whole or pieces

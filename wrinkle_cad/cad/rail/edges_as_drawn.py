@@ -25,7 +25,7 @@ from wrinkle_cad.cad.kernel.topology import (
 from wrinkle_cad.errors import InputError
 
 
-def drawn_edges(source: object, name: str) -> list[TopoDS_Edge]:
+def edges_as_drawn(source: object, name: str) -> list[TopoDS_Edge]:
     """Returns the edges of a source.
 
     Args:
