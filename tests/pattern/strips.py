@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from wrinkle_cad.pattern.formats.dxf import dxf_file
-from wrinkle_cad.pattern.piece.making import make_pieces
+from wrinkle_cad.pattern.piece.making import draft_pieces, finished_pieces, strip_parts
 from wrinkle_cad.pattern.piece.options import PieceSettings
 from wrinkle_cad.strip import triangulate, unroll
 
@@ -82,6 +82,15 @@ def kinked(length=120.0, width=30.0):
     p = np.array(((0, 0, 0), (0.5 * length, -25, 0), (length, 0, 0)))
     x = np.linspace(0.0, length, 9)
     return unrolled(p, np.column_stack((x, 0 * x + width, 0 * x)))
+
+
+def make_pieces(unrolling, triangulation, *, name, settings=None, turned_over=False):
+    """The pieces of a strip that is sewn to no other."""
+    chosen = settings or PieceSettings()
+    parts = strip_parts(
+        unrolling, triangulation, name=name, settings=chosen, turned_over=turned_over
+    )
+    return finished_pieces(draft_pieces(parts, chosen), chosen)
 
 
 def one_piece(unrolling, triangulation, *, name, settings=None):

@@ -9,12 +9,12 @@ import pytest
 from tests.pattern import strips
 from tests.pattern.formats.test_dxf import audit
 from tests.pattern.group_codes import read_group_codes
+from tests.pattern.strips import make_pieces
 from wrinkle_cad.pattern.check.judging import judge_dxf
 from wrinkle_cad.pattern.formats.dxf import dxf_file
 from wrinkle_cad.pattern.formats.pdf import pdf_file
 from wrinkle_cad.pattern.formats.plain_text import LONGEST_TEXT, ascii_name, ascii_text
 from wrinkle_cad.pattern.formats.svg import svg_bytes, write_svg
-from wrinkle_cad.pattern.piece.making import make_pieces
 from wrinkle_cad.pattern.piece.options import PieceSettings
 
 HOSTILE = {

@@ -9,8 +9,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from tests.pattern.strips import make_pieces
 from wrinkle_cad.files.json_values import finite
-from wrinkle_cad.pattern.piece.making import make_pieces
 from wrinkle_cad.pattern.piece.options import NotchRule, PieceSettings
 from wrinkle_cad.report.limits import Limits
 from wrinkle_cad.report.verdict import judge

@@ -13,8 +13,8 @@ mpl.use("Agg")
 from matplotlib import pyplot as plt
 from matplotlib.axes import Axes
 
+from tests.pattern.strips import make_pieces
 from tests.report.strips import planar_rails, view_of, wavy_rails
-from wrinkle_cad.pattern.piece.making import make_pieces
 from wrinkle_cad.pattern.piece.options import PieceSettings
 from wrinkle_cad.report.figures import along, plot_energy, plot_pattern, plot_validity
 from wrinkle_cad.report.views import StripView

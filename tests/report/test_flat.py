@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from tests.pattern.strips import make_pieces
 from tests.report.strips import cylinder_rails, view_of, wavy_rails
-from wrinkle_cad.pattern.piece.making import make_pieces
 from wrinkle_cad.pattern.piece.options import P_SIDE, Q_SIDE, PieceSettings
 from wrinkle_cad.report.flat import bridge_ends, rail_line
 from wrinkle_cad.report.views import StripView

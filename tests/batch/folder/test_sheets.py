@@ -14,6 +14,7 @@ import shapely
 
 from tests.batch.conftest import Bench
 from tests.pattern import strips
+from tests.pattern.strips import make_pieces
 from wrinkle_cad.batch.folder import delivery
 from wrinkle_cad.batch.folder.conversion import ConversionOptions, convert
 from wrinkle_cad.batch.folder.events import BatchSummary
@@ -26,7 +27,6 @@ from wrinkle_cad.job.job import Job
 from wrinkle_cad.job.outcome import JobDone, JobFailed, Progress
 from wrinkle_cad.pattern.check.judging import judge_dxf
 from wrinkle_cad.pattern.formats.piece_file import write_pieces
-from wrinkle_cad.pattern.piece.making import make_pieces
 from wrinkle_cad.pattern.piece.options import PieceSettings
 
 SHEET: dict[str, object] = {"sheet": (300.0, 100.0), "source_date_epoch": 0}

@@ -12,11 +12,10 @@ import numpy as np
 import pytest
 
 from tests.pattern import strips
-from tests.pattern.strips import dxf_bytes
+from tests.pattern.strips import dxf_bytes, make_pieces
 from wrinkle_cad.errors import InputError
 from wrinkle_cad.pattern.check import limits
 from wrinkle_cad.pattern.check.judging import judge_dxf
-from wrinkle_cad.pattern.piece.making import make_pieces
 
 SQUARE = ((0, 0), (100, 0), (100, 50), (0, 50))
 CUT = {"layer": "CUT"}

@@ -9,9 +9,8 @@ import ezdxf
 import pytest
 
 from tests.pattern import strips
-from tests.pattern.strips import dxf_bytes
+from tests.pattern.strips import dxf_bytes, make_pieces
 from wrinkle_cad.pattern.check.judging import judge_dxf
-from wrinkle_cad.pattern.piece.making import make_pieces
 from wrinkle_cad.pattern.piece.options import NotchRule, PieceSettings
 
 CASES = Path(__file__).parent / "cases"

@@ -10,9 +10,8 @@ import pytest
 
 from tests.pattern import strips
 from tests.pattern.group_codes import area_of, read_group_codes
-from tests.pattern.strips import dxf_bytes
+from tests.pattern.strips import dxf_bytes, make_pieces
 from wrinkle_cad.pattern.formats.dxf import write_dxf
-from wrinkle_cad.pattern.piece.making import make_pieces
 from wrinkle_cad.pattern.piece.options import NotchRule, PieceSettings
 
 STYLE_KEYS = {

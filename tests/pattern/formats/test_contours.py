@@ -5,8 +5,8 @@ import pytest
 import shapely
 
 from tests.pattern import strips
+from tests.pattern.strips import make_pieces
 from wrinkle_cad.pattern.formats.contours import closed_spline, with_arcs
-from wrinkle_cad.pattern.piece.making import make_pieces
 from wrinkle_cad.pattern.piece.options import PieceSettings
 
 TOLERANCE = 0.05

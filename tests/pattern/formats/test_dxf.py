@@ -11,11 +11,10 @@ import pytest
 
 from tests.pattern import strips
 from tests.pattern.group_codes import area_of, perimeter_of, read_group_codes
-from tests.pattern.strips import dxf_bytes
+from tests.pattern.strips import dxf_bytes, make_pieces
 from wrinkle_cad.errors import ExportError, InputError
 from wrinkle_cad.pattern.check.judging import judge_dxf
 from wrinkle_cad.pattern.formats.dxf import dxf_file, write_dxf
-from wrinkle_cad.pattern.piece.making import make_pieces
 from wrinkle_cad.pattern.piece.options import NotchRule, PieceSettings
 
 VERSIONS = {"R12": "AC1009", "R2000": "AC1015", "R2010": "AC1024"}

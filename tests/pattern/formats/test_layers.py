@@ -4,12 +4,11 @@ import pytest
 
 from tests.pattern import strips
 from tests.pattern.group_codes import read_group_codes
-from tests.pattern.strips import dxf_bytes
+from tests.pattern.strips import dxf_bytes, make_pieces
 from wrinkle_cad.errors import InputError
 from wrinkle_cad.pattern.check.judging import judge_dxf
 from wrinkle_cad.pattern.formats.dxf import write_dxf
 from wrinkle_cad.pattern.formats.layers import PROFILES, ROLES, profile_from
-from wrinkle_cad.pattern.piece.making import make_pieces
 from wrinkle_cad.pattern.piece.options import NotchRule, PieceSettings
 
 OWN = """

@@ -9,10 +9,10 @@ import pytest
 import shapely
 
 from tests.pattern import strips
+from tests.pattern.strips import make_pieces
 from wrinkle_cad.errors import ExportError, InputError
 from wrinkle_cad.pattern.formats.paper import on_paper
 from wrinkle_cad.pattern.formats.pdf import pdf_file, write_pdf
-from wrinkle_cad.pattern.piece.making import make_pieces
 from wrinkle_cad.pattern.piece.options import PieceSettings
 
 from .test_dxf import FULL

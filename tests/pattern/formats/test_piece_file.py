@@ -9,10 +9,10 @@ import numpy as np
 import pytest
 
 from tests.pattern import strips
+from tests.pattern.strips import make_pieces
 from wrinkle_cad.errors import InputError
 from wrinkle_cad.pattern.formats.dxf import dxf_file
 from wrinkle_cad.pattern.formats.piece_file import pieces_text, read_pieces, write_pieces
-from wrinkle_cad.pattern.piece.making import make_pieces
 from wrinkle_cad.pattern.piece.options import PieceSettings
 
 FULL = PieceSettings(

@@ -11,9 +11,9 @@ import shapely
 
 from tests.pattern import strips
 from tests.pattern.piece.test_lettering import line_shape, text_shape
+from tests.pattern.strips import make_pieces
 from tests.seeds import seeds
 from wrinkle_cad.pattern.formats.dxf import dxf_file
-from wrinkle_cad.pattern.piece.making import make_pieces
 from wrinkle_cad.pattern.piece.nesting import nested
 
 

@@ -7,9 +7,9 @@ import pytest
 
 from tests.pattern import strips
 from tests.pattern.group_codes import area_of
+from tests.pattern.strips import make_pieces
 from wrinkle_cad.errors import ExportError, InputError
 from wrinkle_cad.pattern.formats.svg import svg_bytes, write_svg
-from wrinkle_cad.pattern.piece.making import make_pieces
 from wrinkle_cad.pattern.piece.stacking import laid_out
 
 from .test_dxf import FULL

@@ -7,9 +7,9 @@ import pytest
 import shapely
 
 from tests.pattern import strips
+from tests.pattern.strips import make_pieces
 from tests.seeds import seeds
 from wrinkle_cad.pattern.piece.allowance import cut_outline
-from wrinkle_cad.pattern.piece.making import make_pieces
 from wrinkle_cad.pattern.piece.options import PieceSettings
 from wrinkle_cad.pattern.piece.piece import make_outline
 

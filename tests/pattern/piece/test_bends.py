@@ -12,12 +12,12 @@ import pytest
 import shapely
 
 from tests.pattern import strips
+from tests.pattern.strips import make_pieces
 from wrinkle_cad.errors import ExportError
 from wrinkle_cad.pattern.check.judging import judge_dxf
 from wrinkle_cad.pattern.formats.bend_table import bend_table, write_bend_table
 from wrinkle_cad.pattern.formats.dxf import write_dxf
 from wrinkle_cad.pattern.piece.lettering import lettering
-from wrinkle_cad.pattern.piece.making import make_pieces
 from wrinkle_cad.pattern.piece.options import PieceSettings
 
 RADIUS, ANGLE = 30.0, 2.0

@@ -13,9 +13,8 @@ import shapely.affinity
 from ezdxf.tools.text_size import text_size
 
 from tests.pattern import strips
-from tests.pattern.strips import dxf_bytes
+from tests.pattern.strips import dxf_bytes, make_pieces
 from wrinkle_cad.pattern.piece.lettering import lettering
-from wrinkle_cad.pattern.piece.making import make_pieces
 from wrinkle_cad.pattern.piece.options import PieceSettings
 
 SLOW = pytest.mark.slow

@@ -5,9 +5,8 @@ import pytest
 import shapely
 
 from tests.pattern import strips
-from tests.pattern.strips import one_piece
+from tests.pattern.strips import make_pieces, one_piece
 from wrinkle_cad.errors import InputError
-from wrinkle_cad.pattern.piece.making import make_pieces
 from wrinkle_cad.pattern.piece.options import SIDES, NotchRule, PieceSettings
 from wrinkle_cad.pattern.piece.stacking import laid_out
 from wrinkle_cad.settings import PIECE_GAP

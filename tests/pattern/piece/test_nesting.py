@@ -13,12 +13,12 @@ import pytest
 import shapely
 
 from tests.pattern import strips
+from tests.pattern.strips import make_pieces
 from tests.seeds import seeds
 from wrinkle_cad.errors import InputError
 from wrinkle_cad.pattern.check.judging import judge_dxf
 from wrinkle_cad.pattern.formats.dxf import dxf_file, write_dxf
 from wrinkle_cad.pattern.piece.compacting import compacted
-from wrinkle_cad.pattern.piece.making import make_pieces
 from wrinkle_cad.pattern.piece.nesting import nested
 from wrinkle_cad.pattern.piece.options import PieceSettings
 

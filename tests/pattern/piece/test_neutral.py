@@ -4,8 +4,7 @@ import numpy as np
 import pytest
 
 from tests.pattern import strips
-from tests.pattern.strips import one_piece
-from wrinkle_cad.pattern.piece.making import make_pieces
+from tests.pattern.strips import make_pieces, one_piece
 from wrinkle_cad.pattern.piece.options import PieceSettings
 from wrinkle_cad.strip import triangulate, unroll
 

@@ -5,10 +5,10 @@ import pytest
 import shapely
 
 from tests.pattern import strips
+from tests.pattern.strips import make_pieces
 from tests.seeds import seeds
 from wrinkle_cad.errors import InputError
 from wrinkle_cad.pattern.formats.drawing import draw
-from wrinkle_cad.pattern.piece.making import make_pieces
 from wrinkle_cad.pattern.piece.notch_forms import notch_lines
 from wrinkle_cad.pattern.piece.notches import corner_arcs, notch_arcs
 from wrinkle_cad.pattern.piece.options import NotchRule, PieceSettings

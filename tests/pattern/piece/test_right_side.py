@@ -7,7 +7,7 @@ import pytest
 import shapely
 
 from tests.pattern import strips
-from wrinkle_cad.pattern.piece.making import make_pieces
+from tests.pattern.strips import make_pieces
 from wrinkle_cad.pattern.piece.options import NotchRule, PieceSettings
 from wrinkle_cad.wrinkle.facing import faces_away
 

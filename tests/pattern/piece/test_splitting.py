@@ -7,10 +7,9 @@ import pytest
 import shapely
 
 from tests.pattern import strips
-from tests.pattern.strips import one_piece
+from tests.pattern.strips import make_pieces, one_piece
 from wrinkle_cad.errors import InputError
 from wrinkle_cad.pattern.piece.flat import flat_strip
-from wrinkle_cad.pattern.piece.making import make_pieces
 from wrinkle_cad.pattern.piece.options import END_SIDE, START_SIDE, NotchRule, PieceSettings
 from wrinkle_cad.pattern.piece.splitting import overlaps
 

@@ -23,7 +23,7 @@ from tests.strip.rulings.rails import (
     twisted,
 )
 from wrinkle_cad.strip.rulings.rail_curve import RailCurve
-from wrinkle_cad.strip.rulings.surface import RuledStrip, inner_bend_radius, rule_strip
+from wrinkle_cad.strip.rulings.surface import RuledStrip, rule_strip
 
 CREASE = math.radians(5.0)
 
@@ -90,11 +90,6 @@ def test_a_frustum_is_bent_most_at_its_small_end(small: float, radius: float) ->
     assert [piece.kind for piece in strip.pieces] == ["torsal"]
     assert strip.smallest_bend_radius(CREASE) == pytest.approx(radius, rel=0.01)
     assert strip.strain.largest == pytest.approx(0.0, abs=1e-9)
-
-
-def test_the_inner_face_is_bent_by_the_depth_of_the_neutral_layer_less() -> None:
-    assert inner_bend_radius(3.0, 1.2, 0.5) == pytest.approx(2.4)
-    assert inner_bend_radius(0.4, 1.2, 0.5) == 0.0
 
 
 @pytest.mark.parametrize("tolerance", [0.1, 0.002])

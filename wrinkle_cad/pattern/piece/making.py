@@ -63,38 +63,6 @@ class StripParts:
         return seam_corners(self.strip, self.parts)
 
 
-def make_pieces(
-    unrolling: Unrolling,
-    triangulation: Triangulation,
-    *,
-    name: str,
-    settings: PieceSettings | None = None,
-    turned_over: bool = False,
-) -> tuple[PatternPiece, ...]:
-    """Returns the pieces of one strip: one, or more where it must be split or is wanted twice.
-
-    A strip that overlaps itself when flat is cut at bridges into the fewest pieces that do not
-    (``NAME-1``, ``NAME-2``, ...), with the allowance of the ends and matching notches on the cut.
-    With ``settings.hand`` each piece is followed by its mirror image for the other foot.
-
-    Args:
-        unrolling: the strip in the plane, Q on the left of P.
-        triangulation: the strip in space; its rulings and fold angles are drawn.
-        name: what the piece is called.
-        settings: everything else.
-        turned_over: the side that ``p' x (q - p)`` points away from is the right one.
-
-    Raises:
-        InputError: the strip overlaps itself and is not to be split; a notch, hole or direction
-            does not fit it; it is smaller than the tolerance.
-    """
-    chosen = settings or PieceSettings()
-    parts = strip_parts(
-        unrolling, triangulation, name=name, settings=chosen, turned_over=turned_over
-    )
-    return finished_pieces(draft_pieces(parts, chosen), chosen)
-
-
 def strip_parts(
     unrolling: Unrolling,
     triangulation: Triangulation,
@@ -105,7 +73,19 @@ def strip_parts(
 ) -> StripParts:
     """Returns the neutral layer of a strip, whole and as the parts that do not overlap.
 
-    The arguments and errors are those of ``make_pieces``.
+    A strip that overlaps itself when flat is cut at bridges into the fewest parts that do not,
+    with the allowance of the ends and matching notches on the cut.
+
+    Args:
+        unrolling: the strip in the plane, Q on the left of P.
+        triangulation: the strip in space; its rulings and fold angles are drawn.
+        name: what the piece is called; the parts are ``NAME-1``, ``NAME-2``, ...
+        settings: everything else.
+        turned_over: the side that ``p' x (q - p)`` points away from is the right one.
+
+    Raises:
+        InputError: the strip overlaps itself and is not to be split; it is smaller than the
+            tolerance.
     """
     is_over = turned_over != (settings.right_side == "back")
     strip = neutral_layer(flat_strip(unrolling, triangulation), settings, turned_over=is_over)
@@ -136,7 +116,7 @@ def draft_pieces(parts: StripParts, chosen: PieceSettings) -> tuple[PieceDraft, 
     """Returns the drafts of a strip's pieces, as seen from the side of ``p' x (q - p)``.
 
     Raises:
-        InputError: as ``make_pieces``.
+        InputError: a notch, hole or direction does not fit the strip.
     """
     arcs = seam_arcs(parts.strip, parts.parts, chosen)
     drafts: list[PieceDraft] = []

@@ -133,17 +133,3 @@ def ruled_strip_of(sheet: Sheet, p: RailCurve, q: RailCurve, spacing: float) -> 
 def _exact(p: RailCurve, q: RailCurve, pairing: Pairing) -> Sheet:
     rulings = with_exact_fans(pairing.p, pairing.q, stations_of(pairing), pairing.spacing)
     return sheet_of(p, q, slid(p, q, rulings, pairing.spacing), pairing.spacing)
-
-
-def inner_bend_radius(radius: float, thickness: float, k_factor: float) -> float:
-    """Returns mm: the radius at the inner face of a bent sheet whose neutral layer has `radius`.
-
-    Args:
-        radius: mm; of the surface, on which lengths are kept.
-        thickness: mm; of the material.
-        k_factor: where the neutral layer lies, in shares of the thickness from the inner face.
-
-    >>> inner_bend_radius(3.0, 1.2, 0.5)
-    2.4
-    """
-    return max(0.0, radius - k_factor * thickness)
