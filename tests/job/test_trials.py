@@ -54,7 +54,11 @@ def test_a_stretched_strip_is_tried_with_a_finer_tolerance_and_without_a_price(
     tmp_path: Path,
 ) -> None:
     (strip,) = strips_of(Job(input=skew_file(tmp_path), output_dir=tmp_path / "out"))
-    assert [trial["change"] for trial in strip["trials"]] == ["--tolerance 0.0125", "--price none"]
+    assert [trial["change"] for trial in strip["trials"]] == [
+        "--tolerance 0.0125",
+        "--price none",
+        "--criteria bending",
+    ]
     for trial in strip["trials"]:  # neither can help: there is no developable strip
         assert trial["state"] == "stretched"
         assert trial["max_strain_percent"] == pytest.approx(strip["max_strain_percent"], rel=0.01)
@@ -88,6 +92,7 @@ def test_a_missed_limit_says_what_was_tried_on_the_waves(tmp_path: Path) -> None
         "--fade 0.45",
         "--tolerance 0.0125",
         "--price none",
+        "--criteria bending",
     ]
     radius = trials["--height 1"]["inner_bend_radius_mm"]
     # Waves half as high bend half as sharply.
@@ -104,10 +109,10 @@ def test_a_missed_limit_says_what_was_tried_on_the_waves(tmp_path: Path) -> None
 @pytest.mark.parametrize(
     ("options", "changes"),
     [
-        ({"price": None}, ["--tolerance 0.0125"]),
+        ({"price": None}, ["--tolerance 0.0125", "--criteria bending"]),
         ({"search": "local"}, ["--tolerance 0.0125"]),
         ({"criteria": ("bending",)}, ["--tolerance 0.0125"]),
-        ({"tolerance": 0.2}, ["--tolerance 0.05", "--price none"]),
+        ({"tolerance": 0.2}, ["--tolerance 0.05", "--price none", "--criteria bending"]),
     ],
 )
 def test_a_lever_that_would_change_nothing_is_not_tried(

@@ -22,6 +22,7 @@ from wrinkle_cad.strip.invalid_runs import find_invalid_runs
 from wrinkle_cad.strip.rulings.surface import rule_strip
 from wrinkle_cad.strip.rulings.through_points import rail_through
 from wrinkle_cad.strip.triangulation import triangulate
+from wrinkle_cad.wrinkle.cut_report import CutReport
 from wrinkle_cad.wrinkle.gap_report import gap_reports
 from wrinkle_cad.wrinkle.grain import Stock, inner_radii
 from wrinkle_cad.wrinkle.strip_report import report_on
@@ -108,6 +109,7 @@ def entry_of(view: StripView) -> dict[str, Any]:
         gaps=gap_reports((p, q), ruled, strip, is_closed=False, may_turn=view.role == "strip"),
         invalid_runs=find_invalid_runs(strip),
         inner_radii_mm=inner_radii(strip, flat, ruled, Stock()),
+        cut=CutReport(0.02, 0.13, 40.0, 0.01, False),
     )
     return dict(finite({**report.as_json(), "passed": None, "trials": []}))
 

@@ -44,6 +44,7 @@ def entry(**changes: Any) -> dict[str, Any]:
             "q": {"space": 150.0, "pattern": 150.0},
         },
         "overlaps": False,
+        "cut": {"longer_percent": 0.1, "larger_percent": 0.01, "differs": False},
         "gaps": [],
         "trials": [],
     } | changes
@@ -289,3 +290,18 @@ def test_the_verdict_is_plain_in_the_json() -> None:
     said = judge([stretched()], Limits(max_fold_deg=1.0)).as_json()
     assert said["passed"] is False
     assert said["strips"][0]["name"] == "wrinkle"
+
+
+def test_a_piece_that_is_another_surface_is_said_with_every_verdict() -> None:
+    cut = {"longer_percent": 14.0, "larger_percent": -2.75, "differs": True}
+    words = "up to 14.0% longer along the rulings, 2.75% smaller in area"
+    alone = judge([entry(cut=cut)], Limits())
+    assert alone.headline.endswith(f"But the piece that is cut is another surface: {words}.")
+    assert words in alone.meaning
+    passed = judge([entry(cut=cut), entry(name="other")], Limits(max_strain_percent=1.0))
+    assert passed.passed is True
+    assert passed.headline.endswith(
+        f"But that is of another surface than the piece that is cut: {words}."
+    )
+    band = judge([entry(), entry(name="band", role="band", cut=cut)], Limits())
+    assert "another surface" not in band.headline + band.meaning

@@ -133,18 +133,23 @@ def test_other_threads_stay_as_loud_as_before() -> None:
 
 def test_a_creased_strip_says_where_and_by_how_much() -> None:
     fold = b3d.Polyline((0, 0, 0), (40, 0, 0), (70, 30, 0))
-    (finding,) = WrinkleStrip(fold, b3d.Pos(0, 0, 20) * fold, name="fold").findings
+    strip = WrinkleStrip(fold, b3d.Pos(0, 0, 20) * fold, name="fold")
+    (finding,) = strip.findings
     assert (finding.code, finding.severity) == ("creased", "warning")
     assert finding.message == (
         "fold is creased by 45.0 degrees at 40.0 mm of P and 40.0 mm of Q, where a rail has a"
         " corner."
     )
+    with pytest.warns(WrinkleWarning, match="fold is creased by 45.0 degrees") as caught:
+        assert strip.report.state == "creased"
+    assert caught[0].filename == __file__
 
 
 def test_a_strip_that_stretches_a_sheet_says_by_how_much() -> None:
     rails = (b3d.Line((0, 0, 0), (100, 0, 0)), b3d.Line((0, 20, 0), (100, 20, 53)))
-    (finding,) = WrinkleStrip(*rails, name="skew").findings
+    finding, other = WrinkleStrip(*rails, name="skew").findings
     assert (finding.code, finding.severity) == ("stretched", "warning")
+    assert other.code == "cut-differs"  # the piece folds by 70 degrees instead
     assert re.match(
         r"skew stretches a flat sheet by at most 2\.9\d%, over \d+\.\d mm", finding.message
     )

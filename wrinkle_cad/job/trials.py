@@ -54,7 +54,8 @@ def levers_of(job: Job, *, on_upper: bool) -> Iterator[Lever]:
         >>> from pathlib import Path
         >>> job = Job(input=Path("shoe.step"), waves=5, height=3, margin=4)
         >>> [lever.words for lever in levers_of(job, on_upper=True)]
-        ['--height 1.5', '--margin 6', '--fade 0.45', '--tolerance 0.0125', '--price none']
+        ['--height 1.5', '--margin 6', '--fade 0.45', '--tolerance 0.0125', '--price none',
+     '--criteria bending']
     """
     if on_upper and job.height is not None:
         yield _lever("height", tuple(LOWER * height for height in job.height))
@@ -67,8 +68,10 @@ def levers_of(job: Job, *, on_upper: bool) -> Iterator[Lever]:
         if job.phase_deg[0] != job.phase_deg[1]:
             yield _lever("phase_deg", (job.phase_deg[0], job.phase_deg[0]))
     yield _lever("tolerance", FINER * job.tolerance)
-    if job.price is not None and job.criteria == settings.CRITERIA and job.search == "global":
-        yield _lever("price", None)
+    if job.criteria == settings.CRITERIA and job.search == "global":
+        if job.price is not None:
+            yield _lever("price", None)
+        yield _lever("criteria", ("bending",))
 
 
 def add_trials(job: Job, chosen: Chosen, entries: Sequence[dict[str, Any]], limits: Limits) -> None:
@@ -99,6 +102,8 @@ def _lever(name: str, value: Any) -> Lever:
 
 
 def _written(value: Any) -> str:
+    if isinstance(value, str):
+        return value
     if value is None:
         return "none"
     if isinstance(value, tuple):
@@ -108,7 +113,8 @@ def _written(value: Any) -> str:
 
 
 def _wants_help(entry: Mapping[str, Any]) -> bool:
-    return entry["state"] != "developable" or entry["passed"] is False
+    is_other = entry["role"] == "strip" and entry["cut"]["differs"]
+    return is_other or entry["state"] != "developable" or entry["passed"] is False
 
 
 def _strips_of(job: Job, chosen: Chosen, names: set[str]) -> Sequence[TriangulatedStrip]:
@@ -138,6 +144,8 @@ def _figures_of(strips: Sequence[TriangulatedStrip], limits: Limits) -> dict[str
             "passed": said.passed,
             "max_crease_deg": largest_crease(entry),
             **{key: entry[key] for key in _FIGURES},
+            "cut_longer_percent": entry["cut"]["longer_percent"],
+            "cut_differs": entry["cut"]["differs"],
         }
         for entry, said in zip(entries, verdict.strips, strict=True)
     }

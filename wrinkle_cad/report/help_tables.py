@@ -80,8 +80,12 @@ def trials_card(numbers: Numbers) -> Element | None:
         ("Crease", True),
         ("Bend radius", True),
         ("Twist", True),
+        ("Piece longer", True),
     )
-    note = "Each change by itself, on this file; every other setting as it is."
+    note = (
+        "Each change by itself, on this file; every other setting as it is. Piece longer: along the"
+        " rulings of the surface that is judged."
+    )
     return _card(numbers, "trials", "What was tried", columns, _trial_row, note)
 
 
@@ -89,7 +93,7 @@ def _trial_row(numbers: Numbers, at: int, number: int, trial: Mapping[str, Any])
     path = f"/strips/{at}/trials/{number}"
     name, change = cell(strip_name(numbers, at), kind="name"), cell(trial["change"], kind="word")
     if "failed" in trial:
-        failed = node("td", trial["failed"], colspan="5", class_="text")
+        failed = node("td", trial["failed"], colspan="6", class_="text")
         return node("tr", name, change, failed)
     words = {True: "PASS, ", False: "FAIL, ", None: ""}[trial["passed"]] + trial["state"]
     return node(
@@ -101,6 +105,7 @@ def _trial_row(numbers: Numbers, at: int, number: int, trial: Mapping[str, Any])
         cell(numbers.show(f"{path}/max_crease_deg", "°", 1), right=True),
         cell(numbers.show(f"{path}/inner_bend_radius_mm", "mm", 2), right=True),
         cell(numbers.show(f"{path}/max_twist_deg", "°", 2), right=True),
+        cell(numbers.show(f"{path}/cut_longer_percent", "%", 1), right=True),
     )
 
 

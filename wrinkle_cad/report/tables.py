@@ -124,6 +124,7 @@ def _strips_card(numbers: Numbers) -> Element:
         ("Bending", True),
         ("Least bending", True),
         ("Price", True),
+        ("Piece longer", True),
     )
     rows = []
     for at in range(len(numbers.get("/strips"))):
@@ -137,12 +138,14 @@ def _strips_card(numbers: Numbers) -> Element:
             *(numbers.show(f"{entry}/max_{key}_deg", "°", 2) for key in ("fold", "twist")),
             *(numbers.show(f"{entry}/{key}") for key in ("bending", "least_bending")),
             numbers.show(f"/verdict/strips/{at}/price_of_developability", TIMES, 2),
+            numbers.show(f"{entry}/cut/longer_percent", "%", 1),
         ]
         name = cell(strip_name(numbers, at), kind="name")
         rows.append(node("tr", name, *(cell(figure, right=True) for figure in shown)))
     note = (
         "Price: bending energy of the strip over that of the one that bends least. Far above 1,"
-        " its bridges were made locally convex with folds."
+        " its bridges were made locally convex with folds. Piece longer: how much longer the piece"
+        " that is cut is at most along the rulings of the surface that is judged."
     )
     return card("Strips", table(columns, rows), node("p", note, class_="note"))
 

@@ -103,7 +103,7 @@ def judge(entries: Sequence[Mapping[str, Any]], limits: Limits) -> Verdict:
     return Verdict(
         state=state,
         headline=_headline(leading, shown, limits, found),
-        meaning=_MEANING[state] + _overlap_words(shown),
+        meaning=_MEANING[state] + _overlap_words(shown) + _other_piece_words(shown),
         limits=limits.stated,
         passed=None if not limits.stated else not reasons,
         reasons=reasons,
@@ -141,7 +141,23 @@ def _judge_strip(entry: Mapping[str, Any], limits: Limits) -> StripVerdict:
 
 
 def _sentence(entry: Mapping[str, Any]) -> str:
-    return f"{_state_words(entry)} {_other_figures(entry)}"
+    return f"{_state_words(entry)} {_other_figures(entry)}{_cut_words(entry)}"
+
+
+def _cut_words(entry: Mapping[str, Any]) -> str:
+    """That the piece is another surface than the figures are of, where it is."""
+    cut = entry["cut"]
+    if not cut["differs"]:
+        return ""
+    return f" But the piece that is cut is another surface: {_difference(cut)}."
+
+
+def _difference(cut: Mapping[str, Any]) -> str:
+    longer, larger = (float(cut[f"{key}_percent"]) for key in ("longer", "larger"))
+    return (
+        f"up to {figure(abs(longer))}% {'longer' if longer >= 0.0 else 'shorter'} along the"
+        f" rulings, {figure(abs(larger))}% {'larger' if larger >= 0.0 else 'smaller'} in area"
+    )
 
 
 def _state_words(entry: Mapping[str, Any]) -> str:
@@ -209,7 +225,16 @@ def _kept_words(entries: Sequence[Mapping[str, Any]], limits: Limits) -> str:
     bent = [float(radius) for radius in radii if radius is not None]
     if limits.min_radius_mm is not None and bent:
         parts.append(f"bends to {limits.min_radius_mm:g} mm, needs {figure(min(bent))} mm")
-    return "; ".join(parts) or "every limit is kept"
+    kept = "; ".join(parts) or "every limit is kept"
+    others = [entry["cut"] for entry in entries if entry["cut"]["differs"]]
+    if others:
+        kept += f". But that is of another surface than the piece that is cut: {_worst_cut(others)}"
+    return kept
+
+
+def _worst_cut(cuts: Sequence[Mapping[str, Any]]) -> str:
+    """The difference of the piece that differs most along its rulings."""
+    return _difference(max(cuts, key=lambda cut: abs(float(cut["longer_percent"]))))
 
 
 def _counted(strips: Sequence[StripVerdict], role: str) -> str:
@@ -225,6 +250,16 @@ def _counted(strips: Sequence[StripVerdict], role: str) -> str:
 def _worst(strips: Sequence[StripVerdict]) -> State:
     states = {strip.state for strip in strips}
     return next((state for state in _WORST_FIRST if state in states), "developable")
+
+
+def _other_piece_words(entries: Sequence[Mapping[str, Any]]) -> str:
+    cuts = [entry["cut"] for entry in entries if entry["cut"]["differs"]]
+    if not cuts:
+        return ""
+    return (
+        " But the piece that is cut is another surface than the one judged here:"
+        f" {_worst_cut(cuts)}. Cut a sample first."
+    )
 
 
 def _overlap_words(entries: Sequence[Mapping[str, Any]]) -> str:

@@ -15,6 +15,7 @@ from wrinkle_cad.strip.invalid_runs import InvalidRun, covered_lengths, run_entr
 from wrinkle_cad.strip.rulings.surface import RuledStrip
 from wrinkle_cad.strip.triangulation import Triangulation
 
+from .cut_report import CutReport
 from .gap_report import GapReport
 
 Role = Literal["strip", "band"]
@@ -126,6 +127,9 @@ class StripReport:
     """Seam lengths by rail, ``p`` and ``q``."""
     overlaps: bool
     """Whether the flat pattern covers itself."""
+    cut: CutReport
+    """How the piece that is cut differs from the surface that strain, creases, share, radius and
+    twist are of."""
     gaps: tuple[GapReport, ...]
     """Stretches where a flat sheet must give, in order along the strip, with what closes them."""
     invalid_runs: tuple[InvalidRun, ...]
@@ -153,7 +157,7 @@ class StripReport:
         runs = [run_entry(run) for run in self.invalid_runs]
         gaps = [asdict(gap) for gap in self.gaps]
         creases = [asdict(crease) for crease in self.creases]
-        lists = {"gaps": gaps, "invalid_runs": runs, "creases": creases}
+        lists = {"gaps": gaps, "invalid_runs": runs, "creases": creases, "cut": asdict(self.cut)}
         return {**entry, "seam_lengths_mm": seams, **lists}
 
 
@@ -171,6 +175,7 @@ def report_on(
     gaps: Sequence[GapReport],
     invalid_runs: Sequence[InvalidRun],
     inner_radii_mm: tuple[float, float, float],
+    cut: CutReport,
     is_folded: bool = False,
     is_closed: bool = False,
 ) -> StripReport:
@@ -190,6 +195,7 @@ def report_on(
         invalid_runs: the runs of invalid bridges.
         inner_radii_mm: smallest bend radii at the material's inner face: in all, along the grain
             and across it.
+        cut: how its piece differs from that surface.
         is_folded: whether it folds back on itself or passes through itself.
         is_closed: whether its rails are.
     """
@@ -239,6 +245,7 @@ def report_on(
             "q": SeamLength(lengths_mm[1], unrolling.q_length),
         },
         overlaps=unrolling.overlaps,
+        cut=cut,
         gaps=tuple(gaps),
         invalid_runs=tuple(invalid_runs),
     )

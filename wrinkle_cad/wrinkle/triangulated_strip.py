@@ -23,6 +23,7 @@ from wrinkle_cad.strip.flat.unrolling import Unrolling, unroll, unroll_cones
 from wrinkle_cad.strip.invalid_runs import find_invalid_runs
 from wrinkle_cad.strip.triangulation import Triangulation, triangulate
 
+from .cut_report import CutReport, cut_findings, cut_report
 from .exact_surface import exact_surface, rail_curve
 from .gap_report import GapReport, gap_reports
 from .grain import Stock, inner_radii
@@ -120,17 +121,24 @@ class TriangulatedStrip:
         """What is unsure about the strip; asking for it makes the surface and the unrolling.
 
         Rails that were turned, a fold-back, a strip that passes through itself, a crease, a sheet
-        that must give, a pattern that must be split, an area known to no better than 1e-6. A
-        ``WrinkleWarning`` says so as well.
+        that must give, a piece that is not the surface that is judged, a pattern that must be
+        split, an area known to no better than 1e-6. A ``WrinkleWarning`` says so as well.
         """
         flat = flat_findings(self.name, self.unrolling)
-        sheet = sheet_findings(self.name, self.ruled, is_band=self.role == "band")
-        return (*self._noticed, *sheet, *flat, *area_findings(self.name, self.area_error))
+        return (*self._noticed, *self._judged, *flat, *area_findings(self.name, self.area_error))
 
-    def _tell(self, findings: tuple[Finding, ...]) -> None:
+    @cached_property
+    def _judged(self) -> tuple[Finding, ...]:
+        is_band = self.role == "band"
+        return (
+            *sheet_findings(self.name, self.ruled, is_band=is_band),
+            *cut_findings(self.name, self.cut, self.triangulation, is_band=is_band),
+        )
+
+    def _tell(self, findings: tuple[Finding, ...], calls: int = 4) -> None:
         """Warns of what was found later on, unless the strip has warned before."""
         if not self._is_told:
-            self._is_told = warn_of(findings, 4)
+            self._is_told = warn_of(findings, calls)
 
     def topods_shell(self, surface: settings.Surface | None = None) -> TopoDS_Shell:
         """The surface as the kernel's own shell, made once per kind and shared."""
@@ -243,6 +251,7 @@ class TriangulatedStrip:
     def _report_with(self, gaps: tuple[GapReport, ...]) -> StripReport:
         from wrinkle_cad.cad.kernel.topology import faces_of
 
+        self._tell(self._judged, calls=5)
         return report_on(
             self.name,
             self.triangulation,
@@ -258,7 +267,15 @@ class TriangulatedStrip:
             is_closed=self.p.is_closed and self.q.is_closed,
             is_folded=any(finding.code in FOLDED for finding in self._noticed),
             inner_radii_mm=inner_radii(self.triangulation, self.unrolling, self.ruled, self.stock),
+            cut=self.cut,
         )
+
+    @cached_property
+    def cut(self) -> CutReport:
+        """How the piece that is cut differs from the exact surface, which is judged."""
+        samples = (self.p_samples, self.q_samples)
+        rails = (self.p, self.q)
+        return cut_report(self.ruled, self.unrolling, rails, samples, self.tolerance)
 
     @cached_property
     def ruled(self) -> RuledStrip:

@@ -138,6 +138,8 @@ def figures_of(summary: Mapping[str, Any]) -> dict[str, Any]:
         figures[name] = max(float(strip.get(name, 0.0)) for strip in leading)
     creases = [crease for strip in leading for crease in strip.get("creases", ())]
     figures["max_crease_deg"] = max((float(each["angle_deg"]) for each in creases), default=0.0)
+    longer = [strip.get("cut", {}).get("longer_percent", 0.0) for strip in leading]
+    figures["cut_longer_percent"] = max((abs(float(each)) for each in longer), default=0.0)
     radii = [strip.get("inner_bend_radius_mm") for strip in leading]
     bent = [float(radius) for radius in radii if radius is not None]
     figures["inner_bend_radius_mm"] = min(bent) if bent else None

@@ -23,6 +23,7 @@ FIGURES: Final = (
     "max_crease_deg",
     "inner_bend_radius_mm",
     "max_twist_deg",
+    "cut_longer_percent",
     "interior_bridges",
     "invalid_bridges",
     "inflection_bridges",

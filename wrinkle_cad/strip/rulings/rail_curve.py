@@ -23,7 +23,7 @@ ARC_CELLS: Final = 512
 """A rail's length is integrated over so many cells, shared by its smooth pieces ..."""
 ARC_CELLS_OF_PIECE: Final = 8
 """... each of which gets at least so many."""
-_GAUSS: Final = (
+GAUSS: Final = (
     (0.5 - 0.43056815579702629, 0.17392742256872693),
     (0.5 - 0.16999052179242813, 0.32607257743127307),
     (0.5 + 0.16999052179242813, 0.32607257743127307),
@@ -125,7 +125,7 @@ class RailCurve:
         cells = np.append((edges[:-1, None] + np.diff(edges)[:, None] * share).ravel(), edges[-1])
         width = np.diff(cells)
         length = np.zeros_like(width)
-        for place, weight in _GAUSS:
+        for place, weight in GAUSS:
             length += weight * width * lengths(self.velocity_at(cells[:-1] + place * width))
         margin = BESIDE_CORNER * width
         ends = [lengths(self.velocity_at(at)) for at in (cells[:-1] + margin, cells[1:] - margin)]
