@@ -28,6 +28,7 @@ from .options import StripSettings
 from .ruling_control import RulingControl, control_of
 
 Floats = NDArray[np.float64]
+Mend = Callable[[Triangulation, Pair], tuple[Triangulation, Pair]]
 
 FINER: Final = 3
 """So often chords are halved before it is said that no strip keeps what is asked."""
@@ -102,14 +103,25 @@ def _found_with(
         rails, samples, triangulation = _with_free_ends(search, rails, samples, give_up)
         unused = triangulation.unused
     else:
-        triangulation, samples = _better(search, samples, control.marked(rails, alone))
-    triangulation, samples = without_turning_back(
-        *mended_between(triangulation, rails, samples, chosen.tolerance, search),
-        (rails[0].point_at, rails[1].point_at),
-        search,
-        tolerance=settings.FLAT_LINE_PER_TOLERANCE * chosen.tolerance,
-    )
+        mend = _mending(rails, search, chosen.tolerance)
+        triangulation, samples = _better(search, mend, samples, control.marked(rails, alone))
+        return FoundStrip(rails, samples, triangulation)
+    triangulation, samples = _mending(rails, search, chosen.tolerance)(triangulation, samples)
     return FoundStrip(rails, samples, replace(triangulation, unused=unused))
+
+
+def _mending(rails: tuple[Directrix, Directrix], search: Search, tolerance: float) -> Mend:
+    """What gives a strip the samples without which it would fold or its cones would turn back."""
+
+    def mend(found: Triangulation, samples: Pair) -> tuple[Triangulation, Pair]:
+        return without_turning_back(
+            *mended_between(found, rails, samples, tolerance, search),
+            (rails[0].point_at, rails[1].point_at),
+            search,
+            tolerance=settings.FLAT_LINE_PER_TOLERANCE * tolerance,
+        )
+
+    return mend
 
 
 def _search(chosen: StripSettings, control: RulingControl) -> Callable[..., Triangulation]:
@@ -161,27 +173,37 @@ def _with_free_ends(
     return (p, q), (p_samples, q_samples), replace(found, first_samples=(0, 0))
 
 
-def _better(search: Search, jointly: Pair, alone: Pair) -> tuple[Triangulation, Pair]:
-    """The best triangulation between the samples taken jointly, if these bring anything.
+def _better(search: Search, mend: Mend, jointly: Pair, alone: Pair) -> tuple[Triangulation, Pair]:
+    """The best triangulation between the samples taken jointly, if these bring anything; mended.
 
     Samples that a straight stretch has only because of the other rail are to keep the strip from
     folding. Where it folds back no more, counts no more invalid bridges and bends no more without
-    them, they would only divide its planes.
+    them, they would only divide its planes. What a strip must be mended by counts as well: without
+    them more of its cones may turn back.
     """
     found = search(jointly[0].points, jointly[1].points)
     more = [len(new.points) - len(old.points) for new, old in zip(jointly, alone, strict=True)]
     if not any(more) or not all(map(_are_chords_kept, jointly, alone)):
-        return found, jointly
+        return mend(found, jointly)
     try:
         plain = search(alone[0].points, alone[1].points)
     except ConstraintError:
-        return found, jointly
-    is_no_worse = (
+        return mend(found, jointly)
+    if not _is_no_worse(plain, found):
+        return mend(found, jointly)
+    mended = mend(plain, alone)
+    if mended[0] is plain:
+        return mended
+    other = mend(found, jointly)
+    return mended if _is_no_worse(mended[0], other[0]) else other
+
+
+def _is_no_worse(plain: Triangulation, found: Triangulation) -> bool:
+    return (
         plain.fold_back_count <= found.fold_back_count
         and plain.counted_invalid_count <= found.counted_invalid_count
         and plain.bending <= (1.0 + SAME_BENDING) * found.bending
     )
-    return (plain, alone) if is_no_worse else (found, jointly)
 
 
 def _are_chords_kept(jointly: Samples, alone: Samples) -> bool:

@@ -1,7 +1,8 @@
 """Where bank curves turn back as seen from their apexes, and samples there that mend it.
 
 Over such a curve the cone would be folded by 180 degrees. Cut where the curve runs at its apex, the
-parts do not turn back, and the search finds them apexes of their own.
+parts do not turn back, and the search finds them apexes of their own; cut in its middle they may
+not either, at less bending. Both are tried.
 """
 
 from __future__ import annotations
@@ -18,6 +19,7 @@ from wrinkle_cad.strip.partners import Pair, Search
 from wrinkle_cad.strip.places import place_text
 from wrinkle_cad.strip.portable import dot
 from wrinkle_cad.strip.triangulation import Triangulation
+from wrinkle_cad.strip.validity_price import invalid_cost
 
 from .unrolling import backward_sweeps
 
@@ -33,6 +35,8 @@ would move the places by 1e-10 mm, which sharp folds make visible in the energy.
 NEAR_END: Final = 0.05
 """A bank that turns back nearer to its end than this share of it is cut in its middle instead: its
 parts are seen nearly along their own normals, and no edge becomes tiny."""
+SAME_COST: Final = 1e-9
+"""Costs closer than this share of themselves are equal: round-off is not to choose the cuts."""
 
 
 def without_turning_back(
@@ -58,16 +62,61 @@ def without_turning_back(
     Raises:
         InputError: a bank curve turns back however finely it is cut; the message says where.
     """
+    places = turning_places(found, samples, curves, tolerance=tolerance)
+    if not any(map(len, places)):
+        return found, samples
+    tries = [
+        _cut_until_none_turns(found, samples, curves, search, tolerance, is_halved)
+        for is_halved in (False, True)
+    ]
+    done = [(made, own) for made, own, left in tries if not any(map(len, left))]
+    if not done:
+        made, _, places = tries[0]
+        raise InputError(_refusal(made, places, curves))
+    return done[-1] if _cost(done[-1][0]) < _lowered(_cost(done[0][0])) else done[0]
+
+
+def _cut_until_none_turns(
+    found: Triangulation,
+    samples: Pair,
+    curves: tuple[PointAt, PointAt],
+    search: Search,
+    tolerance: float,
+    is_halved: bool,
+) -> tuple[Triangulation, Pair, tuple[FloatArray, FloatArray]]:
+    """Cuts banks where they turn back, or in their middles: the strip, and where it still does.
+
+    Cut where it turns back a bank has a part that is seen nearly end on, and the triangle over it
+    may fold sharply; cut in its middle it may have to be cut more often. Neither is always better.
+    """
     made, own = found, samples
     places: tuple[FloatArray, FloatArray] = (np.zeros(0), np.zeros(0))
-    for _ in range(ROUNDS):
-        places = turning_places(made, own, curves, tolerance=tolerance)
-        more = [_with(rail, curve, at) for rail, curve, at in zip(own, curves, places, strict=True)]
-        if all(new is old for new, old in zip(more, own, strict=True)):
-            return made, own
-        own = more[0], more[1]
-        made = search(own[0].points, own[1].points)
-    raise InputError(_refusal(made, places, curves))
+    for count in range(ROUNDS + 1):
+        places = turning_places(made, own, curves, tolerance=tolerance, is_halved=is_halved)
+        if count == ROUNDS or not any(map(len, places)):
+            break
+        p, q = (_with(rail, curve, at) for rail, curve, at in zip(own, curves, places, strict=True))
+        own = p, q
+        made = search(p.points, q.points)
+    return made, own, places
+
+
+def _cost(made: Triangulation) -> tuple[float, float, float, float]:
+    """Fold-backs, triangles without area, invalid bridges if they have no price, bending."""
+    charge = 0.0
+    if made.price is not None and made.least_bending is not None:
+        charge = invalid_cost(made.price, made.least_bending, made.interior_count)
+    counted = float(made.counted_invalid_count)
+    return (
+        float(made.fold_back_count),
+        float(made.degenerate_count),
+        counted if made.price is None else 0.0,
+        made.bending + charge * counted,
+    )
+
+
+def _lowered(cost: tuple[float, float, float, float]) -> tuple[float, float, float, float]:
+    return (*cost[:3], (1.0 - SAME_COST) * cost[3])
 
 
 def _refusal(
@@ -89,6 +138,7 @@ def turning_places(
     curves: tuple[PointAt, PointAt],
     *,
     tolerance: float,
+    is_halved: bool = False,
 ) -> tuple[FloatArray, FloatArray]:
     """Returns the parameters at which P and Q turn back, as seen from the apexes of their banks.
 
@@ -97,12 +147,17 @@ def turning_places(
         samples: of P and of Q.
         curves: P and Q, from (k,) parameters to (k, 3) points in mm.
         tolerance: mm; that of the flat lines, see ``unroll_cones``.
+        is_halved: give the middles of these banks instead.
     """
     found = []
     sweeps = backward_sweeps(triangulation, *samples, *curves, tolerance=tolerance)
     for (sweep, apexes), rail, curve in zip(sweeps, samples, curves, strict=True):
         banks = np.flatnonzero(sweep > TURNED_BACK_PER_TOLERANCE * tolerance)
-        places = [_turns(curve, rail.parameters[k : k + 2], apexes[k]) for k in banks.tolist()]
+        ends = [rail.parameters[k : k + 2] for k in banks.tolist()]
+        places = [
+            np.array([0.5 * (own[0] + own[1])]) if is_halved else _turns(curve, own, apexes[k])
+            for k, own in zip(banks.tolist(), ends, strict=True)
+        ]
         found.append(np.concatenate([np.zeros(0), *places]))
     return found[0], found[1]
 
