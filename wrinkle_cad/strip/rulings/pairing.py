@@ -163,7 +163,7 @@ def pair_nodes(
     for i in range(p.shape[0]):
         start[i + 1] = start[i] + high[i] - low[i] + 1
     cost = np.full((start[-1], 3), np.inf)
-    plane = np.zeros((start[-1], 13))
+    plane = np.zeros((start[-1], 14))
     way = np.zeros((start[-1], 3), np.int8)
     step = np.zeros((start[-1], 3), np.int8)
     cost[0, :] = 0.0
@@ -206,18 +206,21 @@ def _planes(p: Floats, q: Floats, a: Floats, b: Floats, plane: Floats) -> float:
             x * dy - y * dx,
         )
     phi = twist_at(p, q, a, b)
-    plane[12] = phi * phi
+    plane[12], plane[13] = phi * phi, length
     return length
 
 
 @compiled
 def _turn(before: Floats, here: Floats, rail: int) -> float:
-    """Returns rad, about: how far a rail's normal turns across the ruling from one to the next."""
+    """Returns rad, about: how far a rail's normal turns across the ruling from one to the next.
+
+    Across both rulings, so that it is as far the other way.
+    """
     at = 6 * rail
     turn = 0.0
     for axis in range(at, at + 3):
-        turn += (here[axis] - before[axis]) * here[axis + 3]
-    return turn
+        turn += (here[axis] - before[axis]) * (here[axis + 3] + before[axis + 3])
+    return 0.5 * turn
 
 
 @compiled
@@ -238,8 +241,8 @@ def _step(
     resting = FAN_P if rail == P_FORWARD else FAN_Q
     if ds > 0.0:
         p_turn, q_turn = _turn(plane[before], plane[cell], 0), _turn(plane[before], plane[cell], 1)
-        weight = bending * length * length / ds
-        short = _SHORTNESS * length * length
+        square = 0.5 * (plane[before, 13] ** 2 + plane[cell, 13] ** 2)
+        weight, short = bending * square / ds, _SHORTNESS * square
         twist = 0.25 * ds * (plane[before, 12] + plane[cell, 12])
         ruled = cost[before, 0] + twist + short * ds + weight * 0.5 * (p_turn**2 + q_turn**2)
         rest = np.inf
