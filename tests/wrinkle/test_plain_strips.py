@@ -228,3 +228,17 @@ def test_p_and_q_swapped_have_the_same_samples_and_energy(seed: int) -> None:
     assert np.array_equal(there.p_samples.points, back.q_samples.points)
     assert np.array_equal(there.q_samples.points, back.p_samples.points)
     assert back.triangulation.bending == pytest.approx(there.triangulation.bending, rel=1e-9)
+
+
+@pytest.mark.parametrize("apart", [1e-13, 1e-11, 1e-10, 1e-9, 1e-8, 9e-8])
+def test_rails_that_meet_to_within_the_kernel_s_tolerance_meet(apart: float) -> None:
+    x = np.linspace(0.0, 100.0, 11)
+    out, up = 8 * np.sin(np.pi * x / 100), 3 * np.sin(x / 9)
+    p = spline(np.stack((x, -out, up), 1))
+    met, near = (
+        WrinkleStrip(p, spline(np.stack((x, out + gap, up + out / 4), 1))) for gap in (0.0, apart)
+    )
+    assert near.triangulation.degenerate_count == met.triangulation.degenerate_count == 2
+    assert near.triangulation.bending <= 1.1 * met.triangulation.bending
+    assert largest_fold_deg(near) == pytest.approx(largest_fold_deg(met), abs=1e-3)
+    assert near.shell().is_valid

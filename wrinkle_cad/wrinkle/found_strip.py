@@ -14,7 +14,12 @@ from wrinkle_cad.cad.rail.apart import check_apart
 from wrinkle_cad.cad.rail.closed_cut import Cut, FoundStrip, cut_open, without_end
 from wrinkle_cad.cad.rail.closed_starts import are_closed, started_alike
 from wrinkle_cad.cad.rail.directrix import Directrix
-from wrinkle_cad.cad.rail.joint_samples import mended_between, sampled_alone, sampled_jointly
+from wrinkle_cad.cad.rail.joint_samples import (
+    mended_between,
+    met_at_ends,
+    sampled_alone,
+    sampled_jointly,
+)
 from wrinkle_cad.cad.rail.trimming import trimmed
 from wrinkle_cad.errors import ConstraintError
 from wrinkle_cad.strip.curve.polyline import polyline_length, segment_lengths
@@ -87,6 +92,9 @@ def _found_with(
     alone = sampled_alone(*rails, chosen.tolerance, max_chord)
     samples = control.marked(rails, sampled_jointly(*rails, alone, chosen.tolerance))
     check_apart(*rails, *samples)
+    own = control.marked(rails, alone)
+    if not is_closed:
+        samples, own = met_at_ends(*samples), met_at_ends(*own)
     search = _search(chosen, control)
     unused = NOTHING_UNUSED
     if is_closed:
@@ -104,7 +112,7 @@ def _found_with(
         unused = triangulation.unused
     else:
         mend = _mending(rails, search, chosen.tolerance)
-        triangulation, samples = _better(search, mend, samples, control.marked(rails, alone))
+        triangulation, samples = _better(search, mend, samples, own)
         return FoundStrip(rails, samples, triangulation)
     triangulation, samples = _mending(rails, search, chosen.tolerance)(triangulation, samples)
     return FoundStrip(rails, samples, replace(triangulation, unused=unused))

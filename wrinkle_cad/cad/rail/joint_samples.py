@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
+
+from wrinkle_cad import settings
 
 from .directrix import Directrix, sample_directrix
 
@@ -77,6 +80,34 @@ def sampled_jointly(
         samples_against(p, alone[0], alone[1].points, tolerance),
         samples_against(q, alone[1], alone[0].points, tolerance),
     )
+
+
+def met_at_ends(
+    p: Samples, q: Samples, keeps: tuple[bool, bool] = (False, False)
+) -> tuple[Samples, Samples]:
+    """Returns the vertices of two open rails, with ends that the kernel takes for one point as one.
+
+    A bridge of 1e-11 mm would have a direction, and the triangles over it folds.
+
+    Args:
+        p: vertices of P.
+        q: vertices of Q.
+        keeps: whether P and Q are to keep their ends; half way between them otherwise.
+    """
+    points = [p.points.copy(), q.points.copy()]
+    if min(map(len, points)) < 2:
+        return p, q
+    is_moved = False
+    for at in (0, -1):
+        ends = [own[at].copy() for own in points]
+        apart = math.dist(*(end.tolist() for end in ends))
+        if not 0.0 < apart <= settings.CONFUSION or all(keeps):
+            continue
+        one = ends[keeps.index(True)] if any(keeps) else 0.5 * (ends[0] + ends[1])
+        points[0][at], points[1][at], is_moved = one, one, True
+    if not is_moved:
+        return p, q
+    return type(p)(p.parameters, points[0]), type(q)(q.parameters, points[1])
 
 
 def samples_against(

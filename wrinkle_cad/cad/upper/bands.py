@@ -22,7 +22,7 @@ from wrinkle_cad.cad.faces.shell import build_shell
 from wrinkle_cad.cad.kernel.curves import edge_ends
 from wrinkle_cad.cad.rail.closed_cut import cut_open, without_end
 from wrinkle_cad.cad.rail.directrix import Directrix, make_directrix, sample_directrix
-from wrinkle_cad.cad.rail.joint_samples import samples_against, search_between
+from wrinkle_cad.cad.rail.joint_samples import met_at_ends, samples_against, search_between
 from wrinkle_cad.errors import InputError
 from wrinkle_cad.strip.curve.nearest import nearest_on_polyline
 from wrinkle_cad.strip.curve.polyline import row_lengths, segment_lengths
@@ -155,6 +155,7 @@ def _searched(
         at_p, at_q = own[int(apart.argmin())].tolist()
         found = cut_open(around, rails, sampled, (at_p, at_q))
         return found.rails, found.samples, found.triangulation
+    sampled = met_at_ends(*sampled, keeps=(i == 1, i == 0))
     free = (None, side) if i else (side, None)
     triangulation, sampled = search_between(free, sampled, tolerance, search)
     return rails, sampled, triangulation

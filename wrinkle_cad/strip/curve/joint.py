@@ -108,7 +108,11 @@ def with_places(
     chord, share = _chords_of(samples.points, places)
     new = _parameters_at(point_at, samples, chord, share)
     parameters = np.unique(np.concatenate((samples.parameters, new)))
-    return _within(point_at, parameters, tolerance)
+    found = _within(point_at, parameters, tolerance)
+    # Where rails meet their ends were moved onto one point.
+    points = found.points.copy()
+    points[np.searchsorted(found.parameters, samples.parameters)] = samples.points
+    return Samples(found.parameters, points)
 
 
 def _wanted_places(line: FloatArray, other: FloatArray) -> FloatArray:
