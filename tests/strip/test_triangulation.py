@@ -308,6 +308,34 @@ def test_coincident_rails_are_refused() -> None:
             triangulate(p, q)
 
 
+@pytest.mark.parametrize("seed", range(6))
+def test_two_samplings_of_any_curve_are_refused(seed: int) -> None:
+    strip = (exact_strips.cone, exact_strips.wrinkled)[seed % 2](seed)
+    tolerances = (1e-2, 2e-2) if seed % 3 else (1e-2, 2e-4)
+    p, q = (strip.sampled(tolerance).q for tolerance in tolerances)
+    with pytest.raises(InputError, match="P and Q coincide: they are nowhere more than"):
+        triangulate(p, q)
+
+
+@pytest.mark.parametrize("apart", [0.1, 1.0, 2.5])
+def test_rails_with_a_corner_beside_each_other_do_not_coincide(apart: float) -> None:
+    # Both have a sagitta of some 10 mm, which is no chord tolerance but their shape.
+    p, q = ([[0.0, 0, 0], [50, 0, top], [100, 0, 0]] for top in (10.0, 10.0 + apart))
+    for rails in ((p, q), (q, p)):
+        found = triangulate(*rails)
+        assert found.area == pytest.approx(50.0 * apart, rel=1e-9)
+        assert found.fold_back_count == 0
+
+
+@pytest.mark.parametrize("way", [(0.0, 0.05, 0.0), (0.0, 0.0, 0.05), (0.0, 0.03, -0.04)])
+def test_a_wave_moved_by_less_than_its_sagitta_does_not_coincide(
+    way: tuple[float, float, float],
+) -> None:
+    x = np.linspace(0.0, 60.0, 40)
+    p = exact_strips.stack(x, 0.0 * x, 5.0 * np.sin(x / 4.0))
+    assert triangulate(p, p + np.array(way)).area > 0.0
+
+
 def test_rails_that_coincide_over_a_stretch_are_refused_with_the_place() -> None:
     strip = exact_strips.convex_cylinder(3).sampled(1e-3)
     q = strip.q.copy()

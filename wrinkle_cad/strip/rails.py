@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import math
+from typing import Final
+
 import numpy as np
 import numpy.typing as npt
 
@@ -16,8 +19,13 @@ from wrinkle_cad.settings import (
 
 from .curve.nearest import nearest_on_polyline
 from .curve.polyline import polyline_length
+from .portable import dot
 
 Floats = npt.NDArray[np.float64]
+
+OUTSIDE_SHARE: Final = 0.25
+"""Samples of one curve lie off the chords between others of it towards its outer side: the cosine
+of the two directions is 0.3 to 0.97. Of two rails beside each other one has minus the other's."""
 
 
 def checked_rails(p: npt.ArrayLike, q: npt.ArrayLike) -> tuple[Floats, Floats]:
@@ -147,7 +155,8 @@ def check_rails_apart(p: Floats, q: Floats, planarity: float) -> None:
 
     A rail may touch the other in single samples, and share one bank edge with it, as where both run
     into the same end. Everywhere means: no sample is further from the other rail than two samplings
-    of one curve are from each other.
+    of one curve are from each other, and each rail lies on the outer side of the other's chords, as
+    these do. Of two rails beside each other one lies on the inner side.
 
     Raises:
         InputError: the strip has no width over a stretch; the message says where.
@@ -158,7 +167,8 @@ def check_rails_apart(p: Floats, q: Floats, planarity: float) -> None:
     q_gap = nearest_on_polyline(q, p_line).distance
     p_limit = max(planarity, COINCIDENT_SAGITTAS * typical_sagitta(q))
     q_limit = max(planarity, COINCIDENT_SAGITTAS * typical_sagitta(p))
-    if p_gap.max() <= p_limit and q_gap.max() <= q_limit:
+    is_near = p_gap.max() <= p_limit and q_gap.max() <= q_limit
+    if is_near and _outside_share(p, q_line) + _outside_share(q, p_line) >= 2.0 * OUTSIDE_SHARE:
         raise InputError(
             f"P and Q coincide: they are nowhere more than {max(p_gap.max(), q_gap.max()):.3g} mm"
             f" apart, and their sampling tells {max(p_limit, q_limit):.3g} mm. Choose two different"
@@ -172,6 +182,21 @@ def check_rails_apart(p: Floats, q: Floats, planarity: float) -> None:
                 f"P and Q coincide over {length:.3g} mm, from sample {first} to {last} of {name}."
                 " They may share one bank edge at most: trim both curves there."
             )
+
+
+def _outside_share(points: Floats, line: Floats) -> float:
+    """Returns how far points lie off a line towards the curve that it samples: -1 to 1.
+
+    The mean cosine of the two directions, by their sizes; 1 for points on the line.
+    """
+    found = nearest_on_polyline(points, line)
+    start, end = line[found.segment], line[found.segment + 1]
+    offset = points - start - found.share[:, None] * (end - start)
+    bulge = np.zeros_like(line)
+    bulge[1:-1] = line[1:-1] - 0.5 * (line[:-2] + line[2:])
+    outward = bulge[found.segment] + bulge[found.segment + 1]
+    most = math.fsum(np.sqrt(dot(offset, offset) * dot(outward, outward)).tolist())
+    return math.fsum(dot(offset, outward).tolist()) / most if most > 0.0 else 1.0
 
 
 def _longest_run(marked: npt.NDArray[np.bool_]) -> tuple[int, int]:
