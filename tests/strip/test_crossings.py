@@ -162,8 +162,32 @@ def test_crossings_move_with_the_strip(seed: int) -> None:
     )
 
 
+@pytest.mark.parametrize("seed", [0, 1, 2, 3, 4, 6, 7, 8])
+def test_the_place_does_not_depend_on_which_way_the_rails_run(seed: int) -> None:
+    rng = np.random.default_rng([5, seed])
+    walk = np.cumsum(rng.normal(0.0, 4.0, (14, 3)), axis=0)
+    p, q = walk, walk[:-2] + rng.normal(0.0, 3.0, 3) + rng.normal(0.0, 1.0, (12, 3))
+    there = self_crossings(triangulate(p, q))
+    assert there.count
+    for rails in ((p[::-1], q[::-1]), (q, p), (q[::-1], p[::-1])):
+        back = self_crossings(triangulate(*rails))
+        assert back.count == there.count
+        np.testing.assert_allclose(back.place, there.place, atol=1e-9)
+
+
+def test_of_two_crossings_the_longer_one_is_the_place() -> None:
+    # Two loops in a row, the second one twice as large and twice as wide.
+    first, second = loop(61), 2.0 * loop(61)
+    curve = np.vstack((first, second - second[0] + first[-1] + np.array((1.0, 0.0, 0.0))))
+    width = np.concatenate((np.full(61, 10.0), np.full(61, 20.0)))
+    for way in (1, -1):
+        p, q = curve[::way], (curve + width[:, None] * np.array((0.0, 1.0, 0.0)))[::way]
+        found = crossings_of(p, q)
+        assert found.place[0] == pytest.approx(second[30, 0] - second[0, 0] + first[-1, 0] + 1.0)
+
+
 def test_results_are_read_only() -> None:
     found = self_crossings(strip_on(loop(30)))
-    for array in (found.triangles, found.partners, found.points):
+    for array in (found.triangles, found.partners, found.points, found.lengths):
         with pytest.raises(ValueError, match="read-only"):
             array[0] = 0

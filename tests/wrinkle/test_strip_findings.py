@@ -10,6 +10,8 @@ import numpy as np
 import pytest
 
 from wrinkle_cad import WrinkleStrip, WrinkleWarning, settings
+from wrinkle_cad.cad.kernel import measures
+from wrinkle_cad.errors import CadError
 from wrinkle_cad.wrinkle.loudness import findings_in_the_result
 from wrinkle_cad.wrinkle.strip_findings import area_findings
 
@@ -97,6 +99,42 @@ def test_a_strip_that_cannot_but_fold_back_says_where() -> None:
     assert 0.0 <= float(found[1]) <= 40.0
     assert 0.0 <= float(found[2]) <= 20.0
     assert strip.report.state == "folded"
+
+
+@pytest.mark.parametrize("is_turned", [False, True])
+def test_a_strip_with_wrong_ends_says_where_its_end_bridge_runs_into_a_rail(
+    is_turned: bool,
+) -> None:
+    hook, straight = [(0, 0), (10, 30), (20, 0), (100, 0)], [(20, 12), (100, 12)]
+    way = -1 if is_turned else 1
+    with pytest.warns(WrinkleWarning) as caught:
+        strip = WrinkleStrip(b3d.Polyline(*hook[::way]), b3d.Line(*straight[::way]), name="hook")
+    assert len(caught) == 1
+    bridge = "last bridge, between the ends" if is_turned else "first bridge, between the starts"
+    assert strip.findings[0].message == (
+        "hook folds back on itself at (15.0, 21.0, 0.0) mm: between these rails there is no strip"
+        f" that does not. Its {bridge} of P and Q, runs into P at (16.7, 10.0, 0.0) mm: trim the"
+        " rails there."
+    )
+
+
+def test_a_strip_whose_area_the_kernel_cannot_settle_says_so_once(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    settled = measures.face_areas
+
+    def unsettled(faces: object, *, relative_error: float) -> list[float]:
+        if relative_error < 1e-5:
+            raise CadError("integrate the area", "it does not settle.")
+        return settled(faces, relative_error=relative_error)  # type: ignore[arg-type]
+
+    monkeypatch.setattr(measures, "face_areas", unsettled)
+    strip = WrinkleStrip(b3d.Line((0, 0, 0), (100, 0, 0)), b3d.Line((0, 20, 0), (100, 20, 0)))
+    with pytest.warns(WrinkleWarning, match="The area of strip is known to 1e-04") as caught:
+        assert strip.report.area_3d_mm2 == pytest.approx(2000.0)
+    assert codes(strip) == ["area-uncertain"]
+    assert strip.area_error > 1e-6
+    assert len(caught) == 1
 
 
 def test_an_area_is_unsure_from_a_millionth_on() -> None:

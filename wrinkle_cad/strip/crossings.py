@@ -16,6 +16,7 @@ import numpy.typing as npt
 from wrinkle_cad.settings import CROSSING_PER_SIZE
 
 from .compiled import compiled
+from .places import outstanding
 from .rails import coarser_sagitta
 from .triangle_pairs import cut_of
 from .triangulation import Triangulation
@@ -40,14 +41,26 @@ class SelfCrossings:
     triangles: Indices
     """(k,) int64, increasing; triangles that cut another one."""
     partners: Indices
-    """(k,) int64; the first other triangle that each of them cuts."""
+    """(k,) int64; the other triangle that each of them cuts furthest."""
     points: Floats
     """(k, 3) float64, mm; the middle of what each pair has in common."""
+    lengths: Floats
+    """(k,) float64, mm; how far each pair cuts: how long what they have in common is."""
 
     @property
     def count(self) -> int:
         """How many triangles cut another one."""
         return len(self.triangles)
+
+    @property
+    def place(self) -> Floats:
+        """(3,) float64, mm: where the strip cuts itself furthest, whichever way its rails run.
+
+        Raises:
+            IndexError: it does not cut itself.
+        """
+        place: Floats = self.points[outstanding(self.lengths, self.points)]
+        return place
 
 
 def self_crossings(triangulation: Triangulation) -> SelfCrossings:
@@ -80,25 +93,26 @@ def self_crossings(triangulation: Triangulation) -> SelfCrossings:
     sagitta = coarser_sagitta(triangulation.p, triangulation.q)
     length = max(min(sagitta, CROSSING_PER_SIZE * size), triangulation.planarity)
     corners = np.ascontiguousarray(triangulation.triangles)
-    partners, places = _first_partners(points, corners, triangulation.planarity, length)
+    partners, cuts = _partners(points, corners, triangulation.planarity, length)
     (cutting,) = np.nonzero(partners >= 0)
-    found = SelfCrossings(cutting.astype(np.int64), partners[cutting], places[cutting])
-    for array in (found.triangles, found.partners, found.points):
+    places, lengths = cuts[cutting, 1:].copy(), cuts[cutting, 0].copy()
+    found = SelfCrossings(cutting.astype(np.int64), partners[cutting], places, lengths)
+    for array in (found.triangles, found.partners, found.points, found.lengths):
         array.flags.writeable = False
     return found
 
 
 @compiled
-def _first_partners(
+def _partners(
     points: Floats, corners: Indices, planarity: float, length: float
 ) -> tuple[Indices, Floats]:
-    """The first other triangle that each triangle cuts, -1 if none, and a place of the cut."""
+    """The other triangle that each triangle cuts furthest, -1 if none; how far, and where."""
     count = corners.shape[0]
     leaves, limits = 1, (planarity, length)
     while leaves * _LEAF < count:
         leaves *= 2
     boxes = _boxes(points, corners, leaves)
-    partners, places = np.full(count, -1, dtype=np.int64), np.zeros((count, 3))
+    partners, cuts = np.full(count, -1, dtype=np.int64), np.zeros((count, 4))
     # Each pair taken off puts at most four of the next level on.
     stack = np.empty((4 * 64, 2), dtype=np.int64)
     stack[0, 0], stack[0, 1] = 1, 1
@@ -109,13 +123,13 @@ def _first_partners(
         if a != b and _are_apart(boxes, a, b):
             continue
         if a >= leaves:
-            _cut_in_leaves(points, corners, (a - leaves, b - leaves), limits, partners, places)
+            _cut_in_leaves(points, corners, (a - leaves, b - leaves), limits, partners, cuts)
             continue
         for k in range(2):
             for other in range(2 if a != b else k + 1):
                 top += 1
                 stack[top, 0], stack[top, 1] = 2 * a + other, 2 * b + k
-    return partners, places
+    return partners, cuts
 
 
 @compiled
@@ -125,21 +139,20 @@ def _cut_in_leaves(
     leaves: tuple[int, int],
     limits: tuple[float, float],
     partners: Indices,
-    places: Floats,
+    cuts: Floats,
 ) -> None:
     """Looks at all pairs of triangles of two runs that are not split further."""
     count = corners.shape[0]
     first, second = leaves[0] * _LEAF, leaves[1] * _LEAF
     for i in range(first, min(count, first + _LEAF)):
         for j in range(max(i + 1, second), min(count, second + _LEAF)):
-            is_cut, x, y, z = cut_of(points, corners, i, j, *limits)
-            if not is_cut:
-                continue
+            cut = cut_of(points, corners, i, j, *limits)
             for k in range(2):
                 own, other = (i, j) if k == 0 else (j, i)
-                if partners[own] < 0 or other < partners[own]:
+                if cut[0] > cuts[own, 0]:
                     partners[own] = other
-                    places[own, 0], places[own, 1], places[own, 2] = x, y, z
+                    for axis in range(4):
+                        cuts[own, axis] = cut[axis]
 
 
 @compiled

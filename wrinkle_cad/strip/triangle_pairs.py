@@ -1,4 +1,4 @@
-"""Whether two triangles in space cut each other, and where.
+"""How far two triangles in space cut each other, and where.
 
 Each must reach through the other's plane; the line that both planes share then runs through either
 triangle over an interval, and the two intervals must overlap (T. Moeller, A fast triangle-triangle
@@ -24,8 +24,8 @@ Triangle = tuple[Vector, Vector, Vector]
 @compiled
 def cut_of(
     points: Floats, corners: Indices, i: int, j: int, planarity: float, length: float
-) -> tuple[bool, float, float, float]:
-    """Tells whether triangles i and j cut each other or cover each other in one plane.
+) -> tuple[float, float, float, float]:
+    """Returns how far triangles i and j cut each other, or cover each other in one plane.
 
     Args:
         points: (k, 3) float64, mm.
@@ -36,9 +36,10 @@ def cut_of(
         length: mm; what they have in common is longer than this, and in one plane wider, too.
 
     Returns:
-        Whether they do, and the middle of what they have in common.
+        mm, the length of what they have in common, its least width where both lie in one plane, 0
+        if nothing; and its middle.
     """
-    nothing = (False, 0.0, 0.0, 0.0)
+    nothing = (0.0, 0.0, 0.0, 0.0)
     shared = 0
     for a in range(3):
         for b in range(3):
@@ -63,7 +64,7 @@ def cut_of(
     start, end = max(low, other_low), min(high, other_high)
     way = 0.5 * (start + end) - low
     return (
-        end - start > length,
+        end - start if end - start > length else 0.0,
         place[0] + way * along[0],
         place[1] + way * along[1],
         place[2] + way * along[2],
@@ -159,8 +160,9 @@ def _interval(
 @compiled
 def _common_part(
     first: Triangle, second: Triangle, normal: Vector, width: float
-) -> tuple[bool, float, float, float]:
-    """Whether no edge of two triangles in one plane keeps them apart (separating axes)."""
+) -> tuple[float, float, float, float]:
+    """How far they reach over each other's edges if none keeps them apart (separating axes)."""
+    least = np.inf
     for number in range(2):
         own = first if number == 0 else second
         for k in range(3):
@@ -169,11 +171,12 @@ def _common_part(
             low = max(min(one[0], one[1], one[2]), min(other[0], other[1], other[2]))
             high = min(max(one[0], one[1], one[2]), max(other[0], other[1], other[2]))
             if high - low <= width:
-                return (False, 0.0, 0.0, 0.0)
+                return (0.0, 0.0, 0.0, 0.0)
+            least = min(least, high - low)
     a, b, c = first
     d, e, f = second
     return (
-        True,
+        least,
         (a[0] + b[0] + c[0] + d[0] + e[0] + f[0]) / 6.0,
         (a[1] + b[1] + c[1] + d[1] + e[1] + f[1]) / 6.0,
         (a[2] + b[2] + c[2] + d[2] + e[2] + f[2]) / 6.0,

@@ -11,7 +11,9 @@ import numpy as np
 from wrinkle_cad import settings
 from wrinkle_cad.errors import Finding, Severity
 from wrinkle_cad.strip.crossings import self_crossings
-from wrinkle_cad.strip.places import place_text
+from wrinkle_cad.strip.curve.polyline import row_lengths
+from wrinkle_cad.strip.end_bridges import end_crossings
+from wrinkle_cad.strip.places import outstanding, place_text
 from wrinkle_cad.strip.triangulation import Triangulation
 
 if TYPE_CHECKING:
@@ -30,16 +32,25 @@ def shape_findings(name: str, triangulation: Triangulation) -> tuple[Finding, ..
 
 def _fold_backs(name: str, triangulation: Triangulation) -> Iterator[Finding]:
     (at,) = np.nonzero(triangulation.folded_back)
-    if len(at):
-        i, j = triangulation.bridges[at[0]]
-        middle = (triangulation.p[i] + triangulation.q[j]) / 2.0
-        yield Finding(
-            "folded-back",
-            "warning",
-            f"{name} folds back on itself at {place_text(middle, _size(triangulation))}"
-            f"{_more(len(at) - 1)}: between these rails there is no strip that does not."
-            " Move them apart there, or sample them more finely.",
-        )
+    if not len(at):
+        return
+    i, j = triangulation.bridges[at].T
+    ends = triangulation.p[i], triangulation.q[j]
+    middles = (ends[0] + ends[1]) / 2.0
+    k = outstanding(row_lengths(ends[1] - ends[0]), middles)
+    size = _size(triangulation)
+    ways = [
+        f"Its {one.end} bridge, between the {'starts' if one.end == 'first' else 'ends'} of P and"
+        f" Q, runs into {one.rail} at {place_text(one.point, size)}: trim the rails there."
+        for one in end_crossings(triangulation)
+    ]
+    yield Finding(
+        "folded-back",
+        "warning",
+        f"{name} folds back on itself at {place_text(middles[k], size)}{_more(len(at) - 1)}:"
+        " between these rails there is no strip that does not."
+        f" {' '.join(ways) or 'Move them apart there, or sample them more finely.'}",
+    )
 
 
 def _crossings(name: str, triangulation: Triangulation) -> Iterator[Finding]:
@@ -48,7 +59,7 @@ def _crossings(name: str, triangulation: Triangulation) -> Iterator[Finding]:
         yield Finding(
             "passes-through-itself",
             "warning",
-            f"{name} passes through itself at {place_text(found.points[0], _size(triangulation))}:"
+            f"{name} passes through itself at {place_text(found.place, _size(triangulation))}:"
             f" {found.count} of its {len(triangulation.triangles)} triangles cut others. It can be"
             " made only if the rails are moved apart there.",
         )
