@@ -8,7 +8,8 @@ import build123d as b3d
 import numpy as np
 import pytest
 
-from wrinkle_cad import WrinkleStrip, carve, stitch, wrinkle_profiles
+from wrinkle_cad import WrinkleStrip, carve, settings, stitch, wrinkle_profiles
+from wrinkle_cad.strip.flat.unrolling import unroll_cones
 
 RADIUS, HEIGHT = 60.0, 200.0
 
@@ -18,15 +19,18 @@ def rail(angle: float) -> b3d.Edge:
     return b3d.Edge.make_line((x, y, 40.0), (x, y, 160.0))
 
 
-@pytest.mark.parametrize("width", [10.0, 20.0, 40.0])
+@pytest.mark.parametrize(
+    ("width", "waves", "height"),
+    [(10.0, 4, 2.0), (20.0, 4, 2.0), (40.0, 4, 2.0), (10.0, 6, 3.0), (10.0, 2, 3.0)],
+)
 def test_a_wrinkle_along_generators_is_stitched_and_its_bands_do_not_fold_over(
-    width: float,
+    width: float, waves: int, height: float
 ) -> None:
     side = max(b3d.Solid.make_cylinder(RADIUS, HEIGHT).faces(), key=lambda face: face.area)
     half = width / 2.0 / RADIUS
     # The cylinder's own seam is at angle 0, on the far side.
     opening = carve(side, rail(math.pi - half), rail(math.pi + half), margin=4.0)
-    p, q = wrinkle_profiles(opening, waves=4, height=2.0)
+    p, q = wrinkle_profiles(opening, waves=waves, height=height)
     strip = WrinkleStrip(p, q)
     made = stitch(opening, strip)
     assert made.report.is_valid
@@ -38,4 +42,13 @@ def test_a_wrinkle_along_generators_is_stitched_and_its_bands_do_not_fold_over(
     for band in made.report.bands:
         assert band.triangulation.fold_back_count == 0
         assert np.degrees(np.abs(band.triangulation.fold).max()) < 90.0
+        flat = unroll_cones(
+            band.triangulation,
+            band.p_samples,
+            band.q_samples,
+            band.p.point_at,
+            band.q.point_at,
+            tolerance=settings.FLAT_LINE_PER_TOLERANCE * settings.TOLERANCE,
+        )
+        assert flat.turned_back_count == 0
     assert strip.unrolling.turned_back_count == 0

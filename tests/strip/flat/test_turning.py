@@ -71,6 +71,22 @@ def test_cut_and_searched_anew_nothing_turns_back() -> None:
     np.testing.assert_allclose(own[0].points, hump(own[0].parameters), atol=1e-12)
 
 
+@pytest.mark.parametrize("keeps", [(False, True), (True, False), (True, True)])
+def test_a_rail_keeps_its_samples_where_the_other_alone_can_be_cut(
+    keeps: tuple[bool, bool],
+) -> None:
+    made, samples, curves = leaning()
+
+    def search(p: np.ndarray, q: np.ndarray) -> Triangulation:
+        return triangulate(p, q, planarity=1e-5)
+
+    found, own = without_turning_back(made, samples, curves, search, tolerance=FINE, keeps=keeps)
+    # It is P that turns back: where it is to keep its samples, it cannot.
+    assert unroll_cones(found, *own, *curves, tolerance=FINE).turned_back_count == 0
+    assert len(own[0].points) > len(samples[0].points)
+    assert (own[1] is samples[1]) or keeps == (True, False)
+
+
 def test_a_strip_that_does_not_turn_back_stays_as_it_is() -> None:
     curves = (hump, lambda t: hump(t) + np.array([0.0, 20.0, 5.0]))
     samples = tuple(sample_curve(curve, (0.0, 1.0), 0.05) for curve in curves)

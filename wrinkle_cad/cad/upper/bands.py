@@ -1,7 +1,8 @@
 """Bands: the strips that close the gap between an opening's boundary and the profiles.
 
 A band is found by the same search as the wrinkle itself, and shares the wrinkle's samples along the
-profile. It has zero width at both ends of the opening; anywhere else that would leave a slit.
+profile; only where a face would be folded it has more. It has zero width at both ends of the
+opening; anywhere else that would leave a slit.
 """
 
 from __future__ import annotations
@@ -27,6 +28,7 @@ from wrinkle_cad.errors import InputError
 from wrinkle_cad.strip.curve.nearest import nearest_on_polyline
 from wrinkle_cad.strip.curve.polyline import row_lengths, segment_lengths
 from wrinkle_cad.strip.curve.sampling import Samples
+from wrinkle_cad.strip.flat.turning import without_turning_back
 from wrinkle_cad.strip.portable import norm
 from wrinkle_cad.strip.sampled_strip import SampledStrip
 from wrinkle_cad.strip.triangulation import Triangulation, triangulate
@@ -155,9 +157,16 @@ def _searched(
         at_p, at_q = own[int(apart.argmin())].tolist()
         found = cut_open(around, rails, sampled, (at_p, at_q))
         return found.rails, found.samples, found.triangulation
-    sampled = met_at_ends(*sampled, keeps=(i == 1, i == 0))
+    keeps = (i == 1, i == 0)
+    sampled = met_at_ends(*sampled, keeps=keeps)
     free = (None, side) if i else (side, None)
-    triangulation, sampled = search_between(free, sampled, tolerance, search)
+    triangulation, sampled = without_turning_back(
+        *search_between(free, sampled, tolerance, search),
+        (rails[0].point_at, rails[1].point_at),
+        search,
+        tolerance=settings.FLAT_LINE_PER_TOLERANCE * tolerance,
+        keeps=keeps,
+    )
     return rails, sampled, triangulation
 
 

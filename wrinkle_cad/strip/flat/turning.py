@@ -46,6 +46,7 @@ def without_turning_back(
     search: Search,
     *,
     tolerance: float,
+    keeps: tuple[bool, bool] = (False, False),
 ) -> tuple[Triangulation, Pair]:
     """Returns a strip whose bank curves do not turn back, if samples on them can bring that about.
 
@@ -55,6 +56,7 @@ def without_turning_back(
         curves: P and Q, from (k,) parameters to (k, 3) points in mm.
         search: how the best triangulation between two rows of points is found.
         tolerance: mm; that of the flat lines, see ``unroll_cones``.
+        keeps: whether P and Q are to keep their samples if that can be: another strip has them too.
 
     Returns:
         The triangulation and its samples; those given if nothing turns back.
@@ -65,12 +67,15 @@ def without_turning_back(
     places = turning_places(found, samples, curves, tolerance=tolerance)
     if not any(map(len, places)):
         return found, samples
-    tries = [
-        _cut_until_none_turns(found, samples, curves, search, tolerance, is_halved)
-        for is_halved in (False, True)
-    ]
-    done = [(made, own) for made, own, left in tries if not any(map(len, left))]
-    if not done:
+    for kept in [keeps, (False, False)] if any(keeps) else [keeps]:
+        tries = [
+            _cut_until_none_turns(found, samples, curves, search, tolerance, kept, is_halved)
+            for is_halved in (False, True)
+        ]
+        done = [(made, own) for made, own, left in tries if not any(map(len, left))]
+        if done:
+            break
+    else:
         made, _, places = tries[0]
         raise InputError(_refusal(made, places, curves))
     return done[-1] if _cost(done[-1][0]) < _lowered(_cost(done[0][0])) else done[0]
@@ -82,6 +87,7 @@ def _cut_until_none_turns(
     curves: tuple[PointAt, PointAt],
     search: Search,
     tolerance: float,
+    keeps: tuple[bool, bool],
     is_halved: bool,
 ) -> tuple[Triangulation, Pair, tuple[FloatArray, FloatArray]]:
     """Cuts banks where they turn back, or in their middles: the strip, and where it still does.
@@ -93,9 +99,10 @@ def _cut_until_none_turns(
     places: tuple[FloatArray, FloatArray] = (np.zeros(0), np.zeros(0))
     for count in range(ROUNDS + 1):
         places = turning_places(made, own, curves, tolerance=tolerance, is_halved=is_halved)
-        if count == ROUNDS or not any(map(len, places)):
+        cuts = [at[:0] if kept else at for at, kept in zip(places, keeps, strict=True)]
+        if count == ROUNDS or not any(map(len, cuts)):
             break
-        p, q = (_with(rail, curve, at) for rail, curve, at in zip(own, curves, places, strict=True))
+        p, q = (_with(rail, curve, at) for rail, curve, at in zip(own, curves, cuts, strict=True))
         own = p, q
         made = search(p.points, q.points)
     return made, own, places
