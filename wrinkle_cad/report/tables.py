@@ -102,6 +102,7 @@ def tables_panel(numbers: Numbers) -> list[Element]:
             gaps_card(numbers),
             trials_card(numbers),
             _findings_card(numbers),
+            _taken_card(numbers),
             _strips_card(numbers),
             runs_card(numbers),
             node("div", *(each for each in small if each is not None), class_="tables"),
@@ -109,6 +110,14 @@ def tables_panel(numbers: Numbers) -> list[Element]:
         )
         if shown is not None
     ]
+
+
+def _taken_card(numbers: Numbers) -> Element | None:
+    """What the file's shapes were taken as, and why."""
+    reasons = numbers.get("/input/reasons")
+    if not reasons:
+        return None
+    return card("Taken from the file", node("ul", *(node("li", line) for line in reasons)))
 
 
 def _strips_card(numbers: Numbers) -> Element:

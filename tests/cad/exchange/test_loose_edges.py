@@ -6,12 +6,16 @@ import random
 from itertools import pairwise
 
 import pytest
-from OCP.TopoDS import TopoDS_Shape
+from OCP.TopoDS import TopoDS_Edge, TopoDS_Shape
 
 from tests.cad.makers import arc, line
-from wrinkle_cad.cad.exchange.loose_edges import chain_edges
+from wrinkle_cad.cad.exchange.loose_edges import chain_edges as numbered
 from wrinkle_cad.cad.kernel.measures import length_of
 from wrinkle_cad.cad.kernel.topology import edges_of, kind_name
+
+
+def chain_edges(edges: list[TopoDS_Edge]) -> list[TopoDS_Shape]:
+    return [chain for _, chain in numbered(edges)]
 
 
 def described(shapes: list[TopoDS_Shape]) -> list[tuple[str, int]]:

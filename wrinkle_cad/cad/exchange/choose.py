@@ -1,7 +1,7 @@
 """Which shapes of a file are P, Q and the upper, and why.
 
-By name: ``upper``; ``P`` and ``Q`` for one strip, ``<strip>:P`` and ``<strip>:Q`` for several.
-Names are compared exactly first and regardless of case then. Without such names exactly two free
+By name: ``upper``, and the rails as ``rails_by_name`` finds them. Names are compared exactly first
+and regardless of case then. Without such names exactly two free
 edges or wires are P and Q, and the only free face or shell is the upper. A choice by hand beats all
 of it. Nothing is compared here: whether P and Q are the same curve shows when they are measured.
 """
@@ -16,6 +16,7 @@ from typing import Final
 from wrinkle_cad import settings
 from wrinkle_cad.errors import InputError
 
+from .rails_by_name import rails_by_strip
 from .shapes import RAILS, UPPER, CadFile, NamedShape, rail_role
 
 _PLURALS: Final = {"vertex": "vertices"}
@@ -90,47 +91,31 @@ def _has_convention(cad_file: CadFile) -> bool:
 
 def _named_strips(cad_file: CadFile) -> tuple[list[StripInput], list[str]]:
     strips, reasons = [], []
-    for name, found in _rails_by_strip(cad_file).items():
-        rail_p, rail_q = (_one_rail(cad_file, name, rail, found.get(rail, [])) for rail in RAILS)
-        strips.append(StripInput(name or settings.STRIP_NAME, rail_p, rail_q))
-        reasons += [f"P is {rail_p}, {_by(rail_p)}", f"Q is {rail_q}, {_by(rail_q)}"]
+    found = rails_by_strip(cad_file.curves())
+    for name, rails in found.items():
+        pair = [_one_rail(cad_file, name, rail, rails[rail]) for rail in RAILS]
+        strips.append(StripInput(name or settings.STRIP_NAME, *pair))
+        of = f" of {name}" if len(found) > 1 else ""
+        reasons += [
+            f"{rail}{of} is {shape}, {_by(shape)}" for rail, shape in zip(RAILS, pair, strict=True)
+        ]
     return strips, reasons
 
 
 def _by(shape: NamedShape) -> str:
     """Says whose name told the role."""
-    carriers = {"set": "of its set", "group": "of its group", "layer": "of its layer"}
-    of = carriers.get(shape.named_by)
-    if shape.named_by == "representation":
-        of = "of its representation"
-    return "by its name" if of is None else f"by the name {of}"
+    words = {"set", "group", "layer", "representation", "instance"}
+    if shape.named_by in words:
+        return f"by the name of its {shape.named_by}"
+    nearest = next((holder for holder in shape.holders if holder.carrier == "product"), None)
+    is_far = shape.named_by == "product" and nearest is not None and nearest.name != shape.name
+    return "by the name of what holds it" if is_far else "by its name"
 
 
-def _rails_by_strip(cad_file: CadFile) -> dict[str, dict[str, list[NamedShape]]]:
-    """Groups the named rails by strip; strips differing in case only are one if P or Q lacks."""
-    rails: dict[str, dict[str, list[NamedShape]]] = {}
-    for curve in cad_file.curves():
-        role = rail_role(curve.name)
-        if role is not None:
-            rails.setdefault(role[0], {}).setdefault(role[1], []).append(curve)
-    for name in [name for name, found in rails.items() if len(found) < len(RAILS)]:
-        alike = [
-            other
-            for other, found in rails.items()
-            if other.casefold() == name.casefold() and len(found) < len(RAILS)
-        ]
-        for other in alike[1:]:
-            for rail, curves in rails.pop(other).items():
-                rails[alike[0]].setdefault(rail, []).extend(curves)
-    return rails
-
-
-def _one_rail(cad_file: CadFile, strip: str, rail: str, found: list[NamedShape]) -> NamedShape:
-    wanted = f"{strip}:{rail}" if strip else rail
-    exact = [shape for shape in found if shape.name == wanted]
-    fits = exact or found
+def _one_rail(cad_file: CadFile, strip: str, rail: str, fits: list[NamedShape]) -> NamedShape:
     if len(fits) == 1:
         return fits[0]
+    wanted = f"{strip}:{rail}" if strip else rail
     if not fits:
         raise _fail(
             cad_file,
@@ -269,7 +254,8 @@ def _upper(
         for shape in cad_file.shapes
         if shape.name.casefold() == UPPER and not shape.is_curve and shape.measure > 0.0
     ]
-    fits = [shape for shape in named if shape.name == UPPER] or named
+    shown = [shape for shape in named if not shape.is_hidden] or named
+    fits = [shape for shape in shown if shape.name == UPPER] or shown
     if len(fits) == 1:
         return fits[0], f"upper is {fits[0]}, by its name"
     surfaces = cad_file.surfaces()

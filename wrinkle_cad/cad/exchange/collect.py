@@ -27,7 +27,7 @@ from wrinkle_cad.cad.kernel.topology import edges_of, kind_name, make_compound, 
 from wrinkle_cad.errors import CadError
 
 from .face_styles import carried_over, styles_in
-from .shapes import CURVE_KINDS, FaceStyle, NamedShape
+from .shapes import CURVE_KINDS, FaceStyle, Holder, NamedShape
 from .sniff import Source
 
 Color = tuple[float, float, float]
@@ -52,6 +52,8 @@ class Found:
     """What carries the name: ``curve``, ``set``, ``layer``, ``product``, ..."""
     is_hidden: bool = False
     """Whether the file says that it is not shown."""
+    holders: tuple[Holder, ...] = ()
+    """Everything that has a name and holds it, the nearest first, itself included."""
 
 
 def take_apart(
@@ -131,6 +133,7 @@ def listed(source: Source, found: Sequence[Found], mm_per_unit: float) -> tuple[
                 faces,
                 item.named_by,
                 item.is_hidden,
+                item.holders,
             )
         )
     return tuple(kept)

@@ -22,15 +22,15 @@ from wrinkle_cad.cad.kernel.topology import vertex_point
 _NEIGHBOURS: Final = np.array(list(product((-1.0, 0.0, 1.0), repeat=3)))
 
 
-def chain_edges(edges: Sequence[TopoDS_Edge]) -> list[TopoDS_Shape]:
+def chain_edges(edges: Sequence[TopoDS_Edge]) -> list[tuple[int, TopoDS_Shape]]:
     """Joins edges end to end where exactly two of them meet, within ``settings.RAIL_GAP``.
 
     Args:
         edges: in any order and direction.
 
     Returns:
-        Wires, and edges that meet no other, in the order of their first edges. Where three or
-        more edges meet, all of them end.
+        Wires, and edges that meet no other, each with the index of its first edge, in that order.
+        Where three or more edges meet, all of them end.
     """
     nodes = _nodes(edges, settings.RAIL_GAP)
     at_node: dict[int, list[int]] = defaultdict(list)
@@ -42,7 +42,7 @@ def chain_edges(edges: Sequence[TopoDS_Edge]) -> list[TopoDS_Shape]:
     for i in range(len(edges)):
         if i in left:
             chains.append(_chain_through(i, nodes, at_node, left))
-    return [_joined([edges[i] for i in chain]) for chain in chains]
+    return [(min(chain), _joined([edges[i] for i in chain])) for chain in chains]
 
 
 def _nodes(edges: Sequence[TopoDS_Edge], gap: float) -> list[tuple[int, int]]:

@@ -5,17 +5,23 @@ from __future__ import annotations
 import re
 import tempfile
 from collections import Counter
+from dataclasses import replace
 from pathlib import Path
 from typing import Final
 
 from OCP.IFSelect import IFSelect_RetDone
 from OCP.IGESCAFControl import IGESCAFControl_Reader
+from OCP.IGESData import IGESData_IGESEntity
+from OCP.TopLoc import TopLoc_Location
+from OCP.TopoDS import TopoDS_Shape
 
 from wrinkle_cad.cad.exchange.step.text import plain_text
 from wrinkle_cad.cad.kernel.steps import KERNEL_ERRORS
 from wrinkle_cad.files.names import error_words
 
-from .collect import listed, take_apart
+from .collect import listed
+from .iges_names import fields_of, item_names
+from .naming import Marker, found_in
 from .shapes import CadFile
 from .sniff import IGES, Source
 from .units import check_unit, unit_words
@@ -52,12 +58,8 @@ def read(source: Source, unit: str | None) -> CadFile:
     _check_records(source, text)
     declared = (_declared_unit(text),)
     check_unit(source, declared, unit)
-    found = [
-        item
-        for leaf in _leaves(source, text)
-        for item in take_apart(leaf.shape, leaf.name, leaf.color, leaf.faces)
-    ]
-    shapes = listed(source, found, 1.0)
+    leaves, number_of = _leaves(source, text)
+    shapes = listed(source, found_in(leaves, number_of, item_names(text)), 1.0)
     if not shapes:
         raise source.fail("no geometry: no curve, face or solid in it. Export it again.")
     words = unit_words(declared, unit)
@@ -91,21 +93,10 @@ def _declared_unit(text: bytes) -> str:
 
 
 def _global_fields(text: bytes) -> list[bytes]:
-    """Splits the global section; a field may be a counted string that holds the delimiter."""
-    delimiter = text[2:3] if text[:2] == b"1H" else b","
-    fields: list[bytes] = []
-    at = 0
-    while at < len(text):
-        counted = re.match(rb"\s*(\d+)H", text[at : at + 12])
-        start = at + counted.end() + int(counted[1]) if counted else at
-        end = text.find(delimiter, start)
-        end = len(text) if end < 0 else end
-        fields.append(text[at:end])
-        at = end + 1
-    return fields
+    return list(fields_of(text, text[2:3] if text[:2] == b"1H" else b","))
 
 
-def _leaves(source: Source, text: bytes) -> list[Leaf]:
+def _leaves(source: Source, text: bytes) -> tuple[list[Leaf], Marker]:
     silence_kernel()
     document = new_document()
     try:
@@ -123,8 +114,24 @@ def _leaves(source: Source, text: bytes) -> list[Leaf]:
             raise source.fail(
                 "damaged: not readable as IGES although its records are whole. Export it again."
             )
-        return leaves_of(document) if is_whole else []
+        # Every entity is a leaf of its own, and all of them are one part.
+        leaves = [replace(leaf, named_at="") for leaf in leaves_of(document)] if is_whole else []
+        return leaves, _marker(reader)
     except KERNEL_ERRORS as error:
         raise source.fail(
             f"damaged: the CAD kernel fails on it ({error_words(error)}). Export it again."
         ) from error
+
+
+def _marker(reader: IGESCAFControl_Reader) -> Marker:
+    """Returns a function that tells the directory entry that a shape was made from."""
+
+    def number_of(shape: TopoDS_Shape) -> int | None:
+        session = reader.WS()
+        entity = session.TransferReader().EntityFromShapeResult(
+            shape.Located(TopLoc_Location()), -1
+        )
+        number = session.Model().DNum(entity) if isinstance(entity, IGESData_IGESEntity) else 0
+        return number or None
+
+    return number_of

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, Final, NamedTuple
 
 if TYPE_CHECKING:
     from OCP.TopoDS import TopoDS_Face, TopoDS_Shape
@@ -26,6 +26,17 @@ def rail_role(name: str) -> tuple[str, str] | None:
 def has_role(name: str) -> bool:
     """Tells whether a name says what its shape is for: a rail or the upper."""
     return rail_role(name) is not None or name.casefold() == UPPER
+
+
+class Holder(NamedTuple):
+    """Something with a name that holds a shape: a set, a product, a layer."""
+
+    name: str
+    """As in the file."""
+    carrier: str
+    """What it is: ``curve``, ``set``, ``representation``, ``product``, ``layer``, ..."""
+    at: str
+    """Tells it from others of the same name."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -65,6 +76,8 @@ class NamedShape:
     """What carries the name: ``curve``, ``set``, ``layer``, ``product``, ...; empty if unknown."""
     is_hidden: bool = False
     """Whether the file says that it is not shown."""
+    holders: tuple[Holder, ...] = ()
+    """Everything that has a name and holds it, the nearest first, itself included."""
 
     @property
     def unit(self) -> str:

@@ -38,7 +38,7 @@ from wrinkle_cad.cad.kernel.topology import as_face, faces_of
 from wrinkle_cad.cad.kernel.versions import LabelList
 from wrinkle_cad.files.names import one_line
 
-from .shapes import FaceStyle, has_role
+from .shapes import FaceStyle, Holder, has_role
 
 Color = tuple[float, float, float]
 
@@ -47,6 +47,19 @@ _AUTOMATIC: Final = re.compile(
     r"Open CASCADE STEP translator.*|Open CASCADE Shape Model|=>\[[\d:]+\]|NONE|Unnamed"
     r"|COMPOUND|COMPSOLID|SOLID|SHELL|FACE|WIRE|EDGE|VERTEX|SHAPE|ASSEMBLY"
 )
+
+# What stands for the name of an instance without one: its number.
+_NUMBER: Final = re.compile(r"(?:NAUO)?\d+")
+
+
+@dataclass(frozen=True, slots=True)
+class _Way:
+    """From the root of the document down to a label."""
+
+    place: TopLoc_Location
+    path: str
+    color: Color | None = None
+    holders: tuple[Holder, ...] = ()
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -59,6 +72,8 @@ class Leaf:
     """Its own name or that of the nearest named ancestor; empty if none has one."""
     named_at: str
     """Identifies the occurrence that carries the name; the leaf itself if there is no name."""
+    holders: tuple[Holder, ...]
+    """Everything that has a name and holds it, the nearest first, itself included."""
     color: Color | None
     """Its own color, or that of its instance."""
     named_surfaces: tuple[tuple[str, TopoDS_Shape, Color | None], ...]
@@ -127,9 +142,8 @@ def leaves_of(document: TDocStd_Document) -> list[Leaf]:
     tool.GetFreeShapes(roots)
     labels = [roots.Value(i) for i in range(1, roots.Length() + 1)]
     uses = Counter(_references(labels))
-    return [
-        leaf for label in labels for leaf in _walk(label, TopLoc_Location(), "", "", None, "", uses)
-    ]
+    way = _Way(TopLoc_Location(), "")
+    return [leaf for label in labels for leaf in _walk(label, way, uses)]
 
 
 def _references(labels: list[TDF_Label]) -> Iterator[str]:
@@ -140,32 +154,38 @@ def _references(labels: list[TDF_Label]) -> Iterator[str]:
         yield from _references(_components(product))
 
 
-def _walk(
-    label: TDF_Label,
-    place: TopLoc_Location,
-    path: str,
-    outer_name: str,
-    outer_color: Color | None,
-    outer_at: str,
-    uses: Counter[str],
-) -> Iterator[Leaf]:
+def _walk(label: TDF_Label, above: _Way, uses: Counter[str]) -> Iterator[Leaf]:
     product = _product(label)
-    path = f"{path}/{_entry(label)}"
-    is_instance = XCAFDoc_ShapeTool.IsReference_s(label)
-    if is_instance:
+    path = f"{above.path}/{_entry(label)}"
+    place, color = above.place, _product_color(product) or above.color
+    if XCAFDoc_ShapeTool.IsReference_s(label):
         place = place * XCAFDoc_ShapeTool.GetLocation_s(label)
-    own = _own_name(label, product, is_repeated=uses[_entry(product)] > 1)
-    name, named_at = (own, path) if own else (outer_name, outer_at)
-    color = (_color(label) if is_instance else None) or _product_color(product) or outer_color
+        color = _color(label) or color
+    own = _own_names(label, product, is_repeated=uses[_entry(product)] > 1)
+    holders = (*(Holder(name, "product", path) for name in own), *above.holders)
+    way = _Way(place, path, color, holders)
     components = _components(product)
     for component in components:
-        yield from _walk(component, place, path, name, color, named_at, uses)
+        yield from _walk(component, way, uses)
     if not components:
         shape = XCAFDoc_ShapeTool.GetShape_s(product)
         if not shape.IsNull():
-            surfaces, faces = _named_surfaces(product, place), _face_styles(product, place)
-            moved = shape.Moved(place)
-            yield Leaf(moved, name, named_at or path, color, tuple(surfaces), tuple(faces))
+            yield _leaf(product, shape.Moved(place), way)
+
+
+def _leaf(product: TDF_Label, shape: TopoDS_Shape, way: _Way) -> Leaf:
+    """Returns a product at its place; a name that says what it is for counts first."""
+    named = next((holder for holder in way.holders if has_role(holder.name)), None)
+    named = named or next(iter(way.holders), None)
+    return Leaf(
+        shape,
+        named.name if named else "",
+        named.at if named else way.path,
+        way.holders,
+        way.color,
+        tuple(_named_surfaces(product, way.place)),
+        tuple(_face_styles(product, way.place)),
+    )
 
 
 def _product(label: TDF_Label) -> TDF_Label:
@@ -184,12 +204,14 @@ def _components(product: TDF_Label) -> list[TDF_Label]:
     return [found.Value(i) for i in range(1, found.Length() + 1)]
 
 
-def _own_name(label: TDF_Label, product: TDF_Label, *, is_repeated: bool) -> str:
-    """Chooses between the name of an instance and that of its product."""
+def _own_names(label: TDF_Label, product: TDF_Label, *, is_repeated: bool) -> list[str]:
+    """Returns the names of an instance and of its product, the one that tells more first."""
     instance, name = _name(label), _name(product)
-    if instance and (is_repeated or not name or has_role(instance)):
-        return instance
-    return name
+    if _NUMBER.fullmatch(instance):
+        instance = ""
+    is_told = bool(instance) and (is_repeated or not name or has_role(instance))
+    both = (instance, name) if is_told else (name, instance)
+    return [name for name in dict.fromkeys(both) if name]
 
 
 def _name(label: TDF_Label) -> str:

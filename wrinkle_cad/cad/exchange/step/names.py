@@ -21,16 +21,25 @@ _CURVE: Final = (
     r"|EDGE_LOOP|(?:EDGE|SHELL)_BASED_WIREFRAME_MODEL|OPEN_PATH|ORIENTED_EDGE|SUBEDGE|WIRE_SHELL"
 )
 _SHELL: Final = r"OPEN_SHELL|CLOSED_SHELL|ORIENTED_OPEN_SHELL|SHELL_BASED_SURFACE_MODEL"
+_SOLID: Final = r"MANIFOLD_SOLID_BREP|BREP_WITH_VOIDS|FACETED_BREP"
+_SURFACE: Final = (
+    r"(?:RECTANGULAR_TRIMMED|CURVE_BOUNDED|RECTANGULAR_COMPOSITE)_SURFACE|B_SPLINE_SURFACE\w*"
+)
 _SET: Final = r"GEOMETRIC_(?:CURVE_)?SET"
 _REPRESENTATION: Final = r"\w*REPRESENTATION"
 _LAYER: Final = r"PRESENTATION_LAYER_ASSIGNMENT"
 _GROUP: Final = r"GROUP|\w*GROUP_ASSIGNMENT"
 _STYLE: Final = r"\w*STYLED_ITEM|INVISIBILITY"
+_MAP: Final = "REPRESENTATION_MAP"
+_INSTANCE: Final = "MAPPED_ITEM"
+_ABOVE_ALL: Final = f"{_LAYER}|{_STYLE}|{_MAP}"
+"""What can hold a whole representation."""
+_ITEM: Final = "|".join((_CURVE, _SHELL, _SOLID, _SURFACE))
 _WANTED: Final = re.compile(
-    f"(?:{'|'.join((_CURVE, _SHELL, _SET, _REPRESENTATION, _LAYER, _GROUP, _STYLE))})"
+    "|".join((_ITEM, _SET, _REPRESENTATION, _LAYER, _GROUP, _STYLE, _MAP, _INSTANCE))
 )
 _FREE: Final = re.compile(rb"\bGEOMETRIC_(?:CURVE_)?SET\b|_BASED_WIREFRAME_MODEL\b|OPEN_SHELL\b")
-_MARKED: Final = re.compile(f"(?:{_CURVE}|{_SHELL})")
+_MARKED: Final = re.compile(_ITEM)
 _HEAD: Final = re.compile(rb"#\s*(\d+)\s*=\s*(\(?)\s*(\w*)")
 _KEYWORD: Final = re.compile(rb"\b([A-Z]\w*)\s*\(")
 _REFERENCE: Final = re.compile(rb"#\s*(\d+)")
@@ -50,6 +59,8 @@ class Candidate(NamedTuple):
     """As in the file."""
     carrier: str
     """What carries it: ``curve``, ``set``, ``layer``, ..."""
+    number: int
+    """Of the entity that carries it."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -117,21 +128,22 @@ def _candidates(
     """Yields the names of an item: its own, of what it consists of, of what holds it, of layers."""
     own = entities[number]
     if own.name:
-        yield Candidate(own.name, _word(own.keyword))
+        yield Candidate(own.name, _word(own.keyword), number)
     inner = {name for name in _inner_names(number, entities, _DEEPEST) if name}
     if len(inner) == 1:
-        yield Candidate(inner.pop(), "curve")
+        yield Candidate(inner.pop(), "curve", number)
     for pattern, word in (
-        (f"{_CURVE}|{_SHELL}", ""),
+        (f"{_CURVE}|{_SHELL}|{_SOLID}", ""),
         (_SET, "set"),
         (_GROUP, "group"),
+        (_INSTANCE, "instance"),
         (_REPRESENTATION, "representation"),
         (_LAYER, "layer"),
     ):
         for holder in above:
             found = entities[holder]
             if found.name and re.fullmatch(pattern, found.keyword):
-                yield Candidate(found.name, word or _word(found.keyword))
+                yield Candidate(found.name, word or _word(found.keyword), holder)
 
 
 def _word(keyword: str) -> str:
@@ -139,6 +151,10 @@ def _word(keyword: str) -> str:
         return "shell"
     if keyword in ("EDGE_CURVE", "ORIENTED_EDGE", "SUBEDGE"):
         return "edge"
+    if "BREP" in keyword:
+        return "solid"
+    if re.fullmatch(_SURFACE, keyword):
+        return "surface"
     return "wire" if re.search("WIREFRAME|PATH|LOOP|EDGE_SET|WIRE_SHELL", keyword) else "curve"
 
 
@@ -163,12 +179,7 @@ def _above(
     found = dict.fromkeys(todo)
     while todo:
         holder = todo.pop(0)
-        # The context of another part is no holder: a representation is not held by its relations.
-        if re.fullmatch(_REPRESENTATION, entities[holder].keyword):
-            upper = [at for at in holders.get(holder, ()) if entities[at].keyword == _LAYER]
-        else:
-            upper = list(holders.get(holder, ()))
-        for at in upper:
+        for at in _holding(holder, entities, holders):
             if at not in found:
                 found[at] = None
                 todo.append(at)
@@ -181,6 +192,23 @@ def _above(
         if group in entities and entities[group].keyword == "GROUP"
     ]
     return [*found, *groups]
+
+
+def _holding(
+    holder: int, entities: Mapping[int, _Entity], holders: Mapping[int, list[int]]
+) -> list[int]:
+    """Returns what holds a holder.
+
+    A representation is not held by its relations: the context of another part is no holder. What
+    is mapped to several places has at each another name, which its number does not tell.
+    """
+    keyword = entities[holder].keyword
+    found = holders.get(holder, [])
+    if keyword == _MAP:
+        return found if len(found) == 1 else []
+    if not re.fullmatch(_REPRESENTATION, keyword):
+        return found
+    return [at for at in found if re.fullmatch(_ABOVE_ALL, entities[at].keyword)]
 
 
 def marked_text(text: bytes, names: ItemNames) -> bytes:

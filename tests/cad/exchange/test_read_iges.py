@@ -1,0 +1,112 @@
+"""Names, levels and groups of IGES files tell the roles; damaged files end in a sentence."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from wrinkle_cad.cad.exchange.choose import Chosen, choose_inputs
+from wrinkle_cad.cad.exchange.read import read_cad
+
+from .iges_texts import Entity, iges_text, level_name, line, name_property
+
+LENGTHS = {"P": 50.0, "Q": 60.0, "axis": 70.0}
+ORDERS = [["P", "Q"], ["Q", "P"], ["axis", "Q", "P"]]
+
+
+def chosen_in(folder: Path, entities: list[Entity], **options: str) -> Chosen:
+    path = folder / "shoe.igs"
+    path.write_text(iges_text(entities, **options))
+    return choose_inputs(read_cad(path))
+
+
+def roles_in(folder: Path, entities: list[Entity], **options: str) -> list[tuple[float, float]]:
+    strips = chosen_in(folder, entities, **options).strips
+    return sorted((round(strip.p.measure, 6), round(strip.q.measure, 6)) for strip in strips)
+
+
+def by_label(names: list[str]) -> list[Entity]:
+    return [line(LENGTHS[name], LENGTHS[name], label=name) for name in names]
+
+
+def by_name(names: list[str]) -> list[Entity]:
+    count = len(names)
+    curves = [
+        Entity(110, f"0.,{LENGTHS[name]},0.,{LENGTHS[name]},{LENGTHS[name]},0.,0,1,{{{count + i}}}")
+        for i, name in enumerate(names)
+    ]
+    return [*curves, *map(name_property, names)]
+
+
+def by_level(names: list[str]) -> list[Entity]:
+    curves = [line(LENGTHS[name], LENGTHS[name], level=i + 1) for i, name in enumerate(names)]
+    return [*curves, *(level_name(i + 1, name) for i, name in enumerate(names))]
+
+
+def by_group(names: list[str]) -> list[Entity]:
+    curves = [line(LENGTHS[name], LENGTHS[name]) for name in names]
+    groups = [
+        Entity(402, f"1,{{{i}}}", form=7, label=name, status="00000300")
+        for i, name in enumerate(names)
+    ]
+    return [*curves, *groups]
+
+
+def by_pieces_on_levels(names: list[str]) -> list[Entity]:
+    """Each rail is two lines on one level."""
+    halves = [
+        Entity(
+            110,
+            f"{LENGTHS[name] / 2 * k},{LENGTHS[name]},0.,{LENGTHS[name] / 2 * (k + 1)},"
+            f"{LENGTHS[name]},0.",
+            level=i + 1,
+        )
+        for k in (1, 0)
+        for i, name in enumerate(names)
+    ]
+    return [*halves, *(level_name(i + 1, name) for i, name in enumerate(names))]
+
+
+@pytest.mark.parametrize("separators", [{}, {"separator": "/", "end": "!"}])
+@pytest.mark.parametrize("names", ORDERS)
+@pytest.mark.parametrize("structure", [by_label, by_name, by_level, by_group, by_pieces_on_levels])
+def test_roles_go_by_name_whatever_carries_it(
+    tmp_path: Path, structure, names: list[str], separators: dict[str, str]
+) -> None:
+    assert roles_in(tmp_path, structure(names), **separators) == [(50.0, 60.0)]
+
+
+def test_levels_of_two_strips_hold_their_rails(tmp_path: Path) -> None:
+    curves = [
+        line(LENGTHS[name] + 100.0 * level, LENGTHS[name] + 9 * level, level=level, label=name)
+        for level in (2, 1)
+        for name in ("Q", "P")
+    ]
+    entities = [*curves, level_name(1, "toe"), level_name(2, "heel")]
+    strips = chosen_in(tmp_path, entities).strips
+    assert {strip.name: strip.p.measure for strip in strips} == {"toe": 150.0, "heel": 250.0}
+
+
+def test_what_is_blanked_is_no_candidate_unless_it_is_named(tmp_path: Path) -> None:
+    shown = [line(LENGTHS[name], LENGTHS[name]) for name in ("P", "Q")]
+    hidden = line(70.0, 70.0, status="01000000")
+    assert roles_in(tmp_path, [hidden, *shown]) == [(50.0, 60.0)]
+    named = [line(70.0, 70.0, status="01000000", label="P"), line(60.0, 60.0, label="Q")]
+    assert roles_in(tmp_path, [*named, line(9.0, 1.0)]) == [(70.0, 60.0)]
+
+
+def plane_face(x: float, level: int) -> list[Entity]:
+    """A B-spline surface of 10 x 10 at x, on a level."""
+    poles = ",".join(f"{x + 10 * i}.,{10 * j}.,0." for j in range(2) for i in range(2))
+    knots = "0.,0.,1.,1.,0.,0.,1.,1."
+    parameters = f"1,1,1,1,0,0,1,0,0,{knots},1.,1.,1.,1.,{poles},0.,1.,0.,1."
+    return [Entity(128, parameters, level=level)]
+
+
+def test_all_faces_on_a_level_called_upper_are_the_upper(tmp_path: Path) -> None:
+    faces = [face for x in (0, 10, 20) for face in plane_face(x, 5)]
+    entities = [*by_label(["Q", "P"]), *faces, *plane_face(90, 6), level_name(5, "upper")]
+    upper = chosen_in(tmp_path, entities).upper
+    assert upper is not None
+    assert (upper.kind, upper.measure) == ("compound", pytest.approx(300.0))
