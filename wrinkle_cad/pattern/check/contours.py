@@ -13,7 +13,7 @@ from wrinkle_cad.pattern.piece.piece import Floats
 
 from . import limits
 from .entities import FileLine
-from .meetings import meeting_pairs
+from .meetings import meeting_pairs, meeting_place, shared_lengths
 
 
 def judge_contours(lines: Sequence[FileLine]) -> Iterator[Finding]:
@@ -126,26 +126,38 @@ def _crossings(rings: Sequence[Floats]) -> Iterator[Finding]:
     if len(contours) < 2:
         return
     pairs = meeting_pairs(contours, distance=limits.HAIR)
-    for first, second in zip(*(np.take(contours, index) for index in pairs), strict=True):
-        if first.equals(second):
-            continue
+    is_first = True
+    for i, j in zip(*(index.tolist() for index in pairs), strict=True):
+        first, second = contours[i], contours[j]
         if _is_double(first, second):
-            yield _finding(
-                "doubled-contour",
-                f"Two contours lie within {limits.HAIR:g} mm of each other all around, "
-                f"from {_place(np.array(first.coords[0]))}. Cut it once: remove one.",
-            )
+            if not first.equals(second):
+                yield _finding(
+                    "doubled-contour",
+                    f"Two contours lie within {limits.HAIR:g} mm of each other all around, "
+                    f"from {_place(np.array(first.coords[0]))}. Cut it once: remove one.",
+                )
         elif first.intersects(second):
-            meeting = shapely.intersection(first, second)
-            at = np.array(meeting.representative_point().coords[0])
-            yield _finding("contours-touch", f"Two contours meet at {_place(at)}. Move one away.")
+            # Only the first one's place is told in the end, and to find it takes a search.
+            where = _common_place(first, second) if is_first else f"as numbers {i + 1} and {j + 1}"
+            yield _finding("contours-touch", f"Two contours meet {where}. Move one away.")
+            is_first = False
+
+
+def _common_place(first: shapely.LinearRing, second: shapely.LinearRing) -> str:
+    return f"at {_place(meeting_place(*map(shapely.get_coordinates, (first, second))))}"
 
 
 def _is_double(first: shapely.LinearRing, second: shapely.LinearRing) -> bool:
+    """Whether every vertex of each lies no further from the other than a hair."""
     apart = np.abs(np.subtract(first.bounds, second.bounds)).max()
     if apart > limits.HAIR:
         return False
-    return bool(shapely.hausdorff_distance(first, second) <= limits.HAIR)
+    for one, other in ((first, second), (second, first)):
+        shapely.prepare(one)
+        vertices = shapely.points(shapely.get_coordinates(other))
+        if not shapely.dwithin(one, vertices, limits.HAIR).all():
+            return False
+    return True
 
 
 def _crossing(contour: shapely.LinearRing) -> str:
@@ -169,7 +181,7 @@ def _overlaps(lines: Sequence[FileLine]) -> Iterator[Finding]:
     segments = segments[np.hypot(along[:, 0], along[:, 1]) > limits.ZERO]
     drawn = shapely.linestrings(segments)
     first, second = meeting_pairs(drawn)
-    shared = shapely.length(shapely.intersection(drawn[first], drawn[second]))
+    shared = shared_lengths(segments[first], segments[second])
     longest = np.flatnonzero(shared > limits.NEAR_MISS)
     if len(longest):
         yield _finding(

@@ -49,10 +49,11 @@ def open_dxf(path: Path) -> OpenedDxf:
     if b"SECTION" not in content:
         raise InputError(f"{path.name} has no DXF section in it. Check what kind of file it is.")
     _check_amount(content, path.name, is_binary=is_binary)
+    is_small = _is_within(content, limits.MOST_TO_MEND, is_binary=is_binary)
     is_whole = content.rstrip(b"\r\n\t \0\x1a").endswith(b"EOF")
     del content
     try:
-        document, auditor = _loaded(path, is_binary=is_binary)
+        document, auditor = _loaded(path, may_mend=is_small and not is_binary)
     # ezdxf raises some twenty classes of errors, bare ones of Python among them, from broken files.
     except Exception as error:
         raise InputError(
@@ -65,28 +66,31 @@ def open_dxf(path: Path) -> OpenedDxf:
 
 def _check_amount(content: bytes, name: str, *, is_binary: bool) -> None:
     """Raises InputError for more than can be read in a bearable time and memory."""
-    if is_binary:
-        is_too_much = len(content) > limits.BINARY_LIMIT
-    else:
-        starts = islice(_ENTITY_START.finditer(content), limits.MOST_ENTITIES + 1)
-        is_too_much = content.count(b"\n") > 2 * limits.MOST_TAGS
-        is_too_much |= sum(1 for _ in starts) > limits.MOST_ENTITIES
-    if is_too_much:
+    if not _is_within(content, 1.0, is_binary=is_binary):
         raise InputError(
             f"{name} holds more than {limits.MOST_ENTITIES:,} lines, marks and vertices, or as "
             "much in another form. Export its pieces in several files."
         )
 
 
-def _loaded(path: Path, *, is_binary: bool) -> tuple[DxfDocument, Any]:
+def _is_within(content: bytes, share: float, *, is_binary: bool) -> bool:
+    """Whether a file's content is within a share of the limits."""
+    if is_binary:
+        return len(content) <= share * limits.BINARY_LIMIT
+    most = int(share * limits.MOST_ENTITIES)
+    starts = islice(_ENTITY_START.finditer(content), most + 1)
+    return content.count(b"\n") <= share * 2 * limits.MOST_TAGS and sum(1 for _ in starts) <= most
+
+
+def _loaded(path: Path, *, may_mend: bool) -> tuple[DxfDocument, Any]:
     """Reads a file; one that is not sound is read again by the slower reader that mends."""
     try:
         document = ezdxf.filemanagement.readfile(str(path))
         auditor = document.audit()
-        if is_binary or not (auditor.errors or auditor.fixes):
+        if not (may_mend and (auditor.errors or auditor.fixes)):
             return document, auditor
     except Exception:
-        if is_binary:
+        if not may_mend:
             raise
     document, auditor = recover.readfile(path)
     return document, auditor
@@ -158,20 +162,30 @@ def check_unfolding(document: DxfDocument, name: str) -> None:
         entered(missing, document.blocks.get(missing) or ())
     if counts[""] > limits.MOST_UNFOLDED:
         raise InputError(
-            f"{name} makes more than {limits.MOST_UNFOLDED:,} lines and marks where its "
+            f"{name} makes more than {limits.MOST_UNFOLDED:,} lines, marks and vertices where its "
             "blocks are inserted. Remove insertions, or export the pieces in several files."
         )
 
 
 def _parts(entities: Iterable[DXFEntity]) -> tuple[int, list[tuple[str, int]]]:
-    """Returns how many entities are drawn as they are, and the blocks inserted, with copies."""
+    """Returns how much is drawn as it is, and the blocks inserted, with copies."""
     own = 0
     children = []
     for entity in entities:
         inserted = list(_inserted(entity))
         children += inserted
-        own += not inserted
+        own += 0 if inserted else _amount(entity)
     return own, children
+
+
+def _amount(entity: DXFEntity) -> int:
+    """Returns how many vertices an entity states, 1 at least."""
+    kind = entity.dxftype()
+    if kind == "LWPOLYLINE":
+        return max(1, len(entity))
+    if kind == "POLYLINE":
+        return max(1, len(entity.vertices))
+    return max(1, len(entity.control_points), len(entity.fit_points)) if kind == "SPLINE" else 1
 
 
 def _inserted(entity: DXFEntity) -> Iterator[tuple[str, int]]:

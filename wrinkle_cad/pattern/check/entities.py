@@ -5,15 +5,19 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
+from itertools import islice
 from types import MappingProxyType
 from typing import Final
 
 import numpy as np
 from ezdxf.entities import DXFEntity
+from ezdxf.math import BSpline as EzdxfSpline
+from ezdxf.math import Vec3
 from ezdxf.path import make_path
 
 from wrinkle_cad import settings
 from wrinkle_cad.pattern.piece.piece import Floats, frozen
+from wrinkle_cad.strip.portable import cos, sin
 
 from . import limits
 
@@ -98,7 +102,9 @@ def line_of(entity: DXFEntity, space: str) -> FileLine | None:
         getattr(entity, "has_arc", False)
     )
     try:
-        points = _along(entity, stated) if is_curved else stated
+        # Numbers without bounds are found below; numpy need not tell the user's screen of them.
+        with np.errstate(all="ignore"):
+            points = _along(entity, stated) if is_curved else stated
     # Bulges and axes that contradict each other: ezdxf has no one error for them.
     except (ArithmeticError, ValueError, RuntimeError, LookupError, TypeError):
         return None
@@ -186,13 +192,39 @@ def _along(entity: DXFEntity, stated: Floats) -> Floats:
         return _along_spline(entity)
     if not _is_usable(stated):
         return stated
+    if entity.dxftype() in ("ARC", "CIRCLE"):
+        return _along_arc(entity)
     path = make_path(entity)
     size = max((path.start.distance(point) for point in path.control_vertices()), default=0.0)
     sagitta = max(_SAGITTA, _SAGITTA_PER_SIZE * size)
-    points = np.array([tuple(point) for point in path.flattening(sagitta)]).reshape(-1, 3)
+    followed = islice(path.flattening(sagitta), limits.MOST_CURVE_POINTS + 1)
+    points = np.array([tuple(point) for point in followed]).reshape(-1, 3)
     # Taken apart, an arc of a large radius may begin with its first point twice, to round-off.
     step = np.abs(np.diff(points, axis=0)).max(axis=1)
     return points[np.append(True, step > limits.ZERO)] if len(points) > 1 else points
+
+
+def _along_arc(entity: DXFEntity) -> Floats:
+    """Returns points (k, 3) along an arc or a circle, of which a drawing may have ten thousand."""
+    dxf, full = entity.dxf, 2.0 * math.pi
+    radius = abs(dxf.radius)
+    start = math.radians(dxf.start_angle) if entity.dxftype() == "ARC" else 0.0
+    turn = (math.radians(dxf.end_angle) - start) % full if entity.dxftype() == "ARC" else full
+    sagitta = max(_SAGITTA, _SAGITTA_PER_SIZE * 2.0 * radius)
+    step = 2.0 * math.acos(1.0 - sagitta / radius) if radius > sagitta else 0.5 * math.pi
+    angles = np.linspace(
+        start, start + (turn or full), max(3, math.ceil((turn or full) / step) + 1)
+    )
+    x, y, z = dxf.center
+    points = np.column_stack(
+        (x + radius * cos(angles), y + radius * sin(angles), np.full(len(angles), z))
+    )
+    system = entity.ocs()
+    if system.transform:
+        points = np.array([tuple(point) for point in system.points_to_wcs(Vec3.generate(points))])
+    if not turn or turn == full:
+        points[-1] = points[0]
+    return points
 
 
 def _along_spline(entity: DXFEntity) -> Floats:
@@ -203,9 +235,26 @@ def _along_spline(entity: DXFEntity) -> Floats:
     knots = spline.knots()
     controls = len(spline.control_points)
     low, high = knots[spline.degree], knots[controls]
-    each = max(1, min(32, _SPLINE_POINTS // controls))
+    places = np.array([tuple(point) for point in spline.control_points], dtype=np.float64)
+    leg = float(np.abs(np.diff(places, axis=0)).max()) if controls > 1 else 0.0
+    # A span as long as a leg that turns by a right angle leaves its chord by an eighth of it.
+    wanted = math.ceil(math.sqrt(leg / (8.0 * _SAGITTA)))
+    each = max(1, min(32, max(4, wanted), _SPLINE_POINTS // controls))
     parameters = np.linspace(low, high, each * controls + 1)
-    return np.array([tuple(point) for point in spline.points(parameters.tolist())])
+    return _spline_points(spline, parameters)
+
+
+def _spline_points(spline: EzdxfSpline, parameters: Floats) -> Floats:
+    """Returns points (k, 3); ezdxf's own evaluation takes a hundred times as long."""
+    # scipy loads in a fifth of a second, and most drawings have no spline.
+    from scipy.interpolate import BSpline
+
+    controls = np.array([tuple(point) for point in spline.control_points], dtype=np.float64)
+    weights = np.asarray(spline.weights() or np.ones(len(controls)), dtype=np.float64)
+    rows = np.column_stack((controls * weights[:, None], weights))
+    knots = np.asarray(spline.knots(), dtype=np.float64)
+    found = BSpline(knots, rows, spline.degree)(parameters)
+    return np.asarray(found[:, :3] / found[:, 3:])
 
 
 def _stated_vertices(entity: DXFEntity) -> Floats:

@@ -20,7 +20,9 @@ from ezdxf.entities import DXFEntity
 
 from wrinkle_cad import settings
 from wrinkle_cad.errors import InputError
+from wrinkle_cad.pattern.formats.ezdxf_log import without_ezdxf_log
 
+from . import limits
 from .document import check_unfolding, open_dxf
 from .entities import LINES, FileLine, FileMark, line_of, mark_of
 
@@ -88,7 +90,7 @@ def read_dxf(path: Path) -> DxfContent:
         InputError: it cannot be read, is no DXF file, or would unfold without end.
     """
     try:
-        with _collector_at_rest():
+        with _collector_at_rest(), without_ezdxf_log():
             return _content(path)
     except InputError:
         raise
@@ -125,10 +127,16 @@ def _content(path: Path) -> DxfContent:
     lines: list[FileLine] = []
     marks: list[FileMark] = []
     unusable: list[str] = []
+    curve_points = 0
     try:
         for space, entities in _spaces(document, blocks, is_blocks=is_blocks):
             for entity in entities:
-                _collect(entity, space, lines, marks, unusable)
+                _check_fit_points(entity, path.name)
+                curve_points += _collect(entity, space, lines, marks, unusable)
+                if curve_points > limits.MOST_CURVE_POINTS:
+                    raise InputError(_too_curved(path.name))
+    except InputError:
+        raise
     # ezdxf meets contradictions inside entities only here, with errors of any class.
     except Exception as error:
         raise InputError(
@@ -206,11 +214,12 @@ def _collect(
     lines: list[FileLine],
     marks: list[FileMark],
     unusable: list[str],
-) -> None:
+) -> int:
+    """Adds an entity where it belongs, and returns how many points it was taken apart to."""
     kind = entity.dxftype()
     # A block's attribute definition is a form to be filled in: only its attributes are drawn.
     if kind == "ATTDEF" and (space == ENTITIES or entity.dxf.layer != "1"):
-        return
+        return 0
     made: FileLine | FileMark | None = line_of(entity, space) or mark_of(entity, space)
     if made is None:
         unusable.append(
@@ -219,8 +228,28 @@ def _collect(
         )
     elif isinstance(made, FileLine):
         lines.append(made)
+        return len(made.points) if made.is_curved else 0
     else:
         marks.append(made)
+    return 0
+
+
+def _check_fit_points(entity: DXFEntity, name: str) -> None:
+    if entity.dxftype() != "SPLINE" or len(entity.control_points):
+        return
+    if len(entity.fit_points) > limits.MOST_FIT_POINTS:
+        raise InputError(
+            f"{name} has a SPLINE on layer {entity.dxf.layer!a} without control points, through "
+            f"{len(entity.fit_points):,} points. At most {limits.MOST_FIT_POINTS:,} are read: "
+            "export it with control points, or as lines."
+        )
+
+
+def _too_curved(name: str) -> str:
+    return (
+        f"{name} has curves that take more than {limits.MOST_CURVE_POINTS:,} points to follow. "
+        "Export its pieces in several files, or as lines."
+    )
 
 
 def _paper_layers(document: DxfDocument) -> Iterator[str]:

@@ -8,9 +8,7 @@ any block that is not a piece.
 from __future__ import annotations
 
 import io
-import logging
-from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Sequence
 from dataclasses import dataclass
 from datetime import datetime
 from functools import partial
@@ -30,6 +28,7 @@ from wrinkle_cad.settings import Curves, DxfVersion
 from .aama import STYLE_NAME, block_document, block_text_box, scale_piece
 from .cutter import cutter_document
 from .drawing import text_box
+from .ezdxf_log import without_ezdxf_log
 from .layers import Profile, profile_from
 from .stamping import EPOCH, stamped
 
@@ -84,7 +83,8 @@ def dxf_file(
     moment = timestamp or EPOCH
     release = version or ("R12" if chosen.is_blocks else settings.DXF_VERSION)
     stream = io.StringIO()
-    with _without_unit_warning():
+    # R12 has no unit, and every piece states it.
+    with without_ezdxf_log(about="$INSUNITS"):
         if chosen.is_blocks:
             everything = [*pieces, scale_piece(pieces[0])] if test_square else pieces
             document, findings = block_document(
@@ -177,18 +177,3 @@ def _layout_blocks_finding(profile: str, release: str) -> Finding:
         f"The {profile} file is {release}, which needs layout blocks that are no pieces; Gerber "
         "reads blocks of pieces only. Use R12 for it.",
     )
-
-
-@contextmanager
-def _without_unit_warning() -> Iterator[None]:
-    """Keeps ezdxf from telling the user's screen that R12 has no unit: every piece states it."""
-
-    def tells_more(record: logging.LogRecord) -> bool:
-        return "$INSUNITS" not in record.getMessage()
-
-    logger = logging.getLogger("ezdxf")
-    logger.addFilter(tells_more)
-    try:
-        yield
-    finally:
-        logger.removeFilter(tells_more)
