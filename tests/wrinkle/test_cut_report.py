@@ -31,7 +31,7 @@ def codes(strip: WrinkleStrip) -> list[str]:
 def test_a_piece_that_is_not_the_surface_judged_is_said_with_its_figures(seed: int) -> None:
     strip = strip_of(twisted, seed)
     with pytest.warns(WrinkleWarning, match="is not the surface that the verdict is about"):
-        report = strip.report_without_gaps
+        report = strip.trial_report
     cut = report.cut
     assert cut.differs
     assert max(cut.longer_percent, abs(cut.larger_percent)) > 1.0

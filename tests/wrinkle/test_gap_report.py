@@ -97,8 +97,8 @@ def test_the_rails_of_a_band_are_not_the_users_to_turn() -> None:
     assert "a wall that the program made" in gap.advice
 
 
-def test_a_report_without_gaps_is_the_same_but_for_them() -> None:
+def test_the_report_of_a_trial_is_the_same_but_for_gaps_and_faces() -> None:
     strip = strip_of(twisted(0))
-    whole, bare = strip.report.as_json(), strip.report_without_gaps.as_json()
-    assert bare["gaps"] == []
-    assert {**whole, "gaps": []} == bare
+    whole, bare = strip.report.as_json(), strip.trial_report.as_json()
+    assert bare["area_3d_mm2"] == pytest.approx(whole["area_3d_mm2"], rel=1e-6)
+    assert {**whole, "gaps": [], "faces": 0, "area_3d_mm2": bare["area_3d_mm2"]} == bare

@@ -16,6 +16,8 @@ if TYPE_CHECKING:
     from wrinkle_cad.report.limits import Limits
     from wrinkle_cad.wrinkle.triangulated_strip import TriangulatedStrip
 
+    from .wrinkled_upper import WrinkledUpper
+
 FINER: Final = 0.25
 """The tolerance is tried at this share of itself, ..."""
 LOWER: Final = 0.5
@@ -74,12 +76,19 @@ def levers_of(job: Job, *, on_upper: bool) -> Iterator[Lever]:
         yield _lever("criteria", ("bending",))
 
 
-def add_trials(job: Job, chosen: Chosen, entries: Sequence[dict[str, Any]], limits: Limits) -> None:
+def add_trials(
+    job: Job,
+    chosen: Chosen,
+    upper: WrinkledUpper | None,
+    entries: Sequence[dict[str, Any]],
+    limits: Limits,
+) -> None:
     """Adds to the entries of ``strips`` that want help what was tried on each of them.
 
     Args:
         job: the settings.
         chosen: the rails and the upper.
+        upper: the upper as it was made; None without one.
         entries: of ``strips`` in the JSON, judged.
         limits: what the strips are judged by.
     """
@@ -88,7 +97,7 @@ def add_trials(job: Job, chosen: Chosen, entries: Sequence[dict[str, Any]], limi
         return
     for lever in levers_of(job, on_upper=chosen.upper is not None):
         try:
-            strips = _strips_of(replace(job, **lever.changes), chosen, set(wanting))
+            strips = _strips_of(replace(job, **lever.changes), chosen, upper, set(wanting))
             found = _figures_of(strips, limits)
         except WrinkleError as error:
             found = {name: {"failed": str(error)} for name in wanting}
@@ -117,12 +126,13 @@ def _wants_help(entry: Mapping[str, Any]) -> bool:
     return is_other or entry["state"] != "developable" or entry["passed"] is False
 
 
-def _strips_of(job: Job, chosen: Chosen, names: set[str]) -> Sequence[TriangulatedStrip]:
-    if chosen.upper is not None:
-        from .wrinkled_upper import wrinkle_upper
+def _strips_of(
+    job: Job, chosen: Chosen, upper: WrinkledUpper | None, names: set[str]
+) -> Sequence[TriangulatedStrip]:
+    if upper is not None:
+        from .wrinkled_upper import tried_on_upper
 
-        upper = wrinkle_upper(job, chosen)
-        return (*upper.strips, *upper.bands)
+        return tried_on_upper(job, chosen, upper, names)
     from .parts import rails_of, strip_name, strip_of
 
     return [
@@ -136,7 +146,7 @@ def _figures_of(strips: Sequence[TriangulatedStrip], limits: Limits) -> dict[str
     from wrinkle_cad.report.judging import largest_crease
     from wrinkle_cad.report.verdict import judge
 
-    entries = [strip.report_without_gaps.as_json() for strip in strips]
+    entries = [strip.trial_report.as_json() for strip in strips]
     verdict = judge(entries, limits)
     return {
         entry["name"]: {

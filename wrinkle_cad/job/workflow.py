@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
     from .writing import Made
 
-_PHASES: Final = ("read", "strip", "surface", "pattern", "judge", "write", "page")
+_PHASES: Final = ("read", "strip", "surface", "pattern", "judge", "try", "write", "page")
 _NOT_HASHED: Final = ("json", "html")
 
 
@@ -74,11 +74,20 @@ def _one_line_of(error: Exception, job: Job) -> str:
 
 
 def _run(job: Job, clock: PhaseClock) -> JobDone:
+    from .trials import add_trials
+
     with clock.phase("read"):
         file, chosen = _read(job)
     made = _make(job, chosen, clock)
     with clock.phase("judge"):
-        summary = _judged(job, file, chosen, made)
+        findings = _findings_of(made)
+        entries = entries_of([strip.report for strip in made.strips], made.limits)
+    with clock.phase("try"):
+        if not job.no_trials:
+            add_trials(job, chosen, made.upper, entries, made.limits)
+    summary = summary_of(job, file, chosen, entries, findings, made.limits)
+    if made.upper is not None:
+        summary["stitch"] = made.upper.stitch_as_json()
     outputs = _write(job, made, summary, clock)
     return JobDone(
         job=job,
@@ -135,22 +144,13 @@ def _check_no_waves(job: Job) -> None:
         )
 
 
-def _judged(job: Job, file: CadFile, chosen: Chosen, made: Made) -> dict[str, Any]:
-    from .trials import add_trials
-
-    findings = [
+def _findings_of(made: Made) -> list[Finding]:
+    return [
         *(made.upper.findings if made.upper is not None else ()),
         *(finding for strip in made.strips for finding in findings_on(strip)),
         *made.pattern.findings,
         *_sheet_findings(made),
     ]
-    entries = entries_of([strip.report for strip in made.strips], made.limits)
-    if not job.no_trials:
-        add_trials(job, chosen, entries, made.limits)
-    summary = summary_of(job, file, chosen, entries, findings, made.limits)
-    if made.upper is not None:
-        summary["stitch"] = made.upper.stitch_as_json()
-    return summary
 
 
 def _sheet_findings(made: Made) -> Iterator[Finding]:

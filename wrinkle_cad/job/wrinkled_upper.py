@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Collection, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, TypeVar
 
@@ -18,11 +18,12 @@ from wrinkle_cad.wrinkle.triangulated_strip import TriangulatedStrip
 from wrinkle_cad.wrinkle.wrinkle_strip import WrinkleStrip
 
 from .job import Job
-from .parts import limits_of, material_of, rails_of, strip_of
+from .parts import limits_of, material_of, rails_of, strip_name, strip_of
 
 if TYPE_CHECKING:
     from wrinkle_cad.cad.exchange.choose import Chosen, StripInput
     from wrinkle_cad.cad.exchange.shapes import NamedShape
+    from wrinkle_cad.cad.upper.bands import Band
     from wrinkle_cad.cad.upper.opening import CarveRequest, Opening
     from wrinkle_cad.cad.upper.stitch import Stitched
 
@@ -56,6 +57,8 @@ class WrinkledUpper:
     """The strips between the openings' boundaries and the wrinkles."""
     stitched: Stitched
     """The shell and its report."""
+    waves: tuple[object, ...]
+    """How the profiles were designed."""
 
     @property
     def turned_over(self) -> tuple[bool, ...]:
@@ -140,7 +143,7 @@ def wrinkle_upper(job: Job, chosen: Chosen) -> WrinkledUpper:
     requests = [_request(job, given) for given in chosen.strips]
     openings = carve_shapes(upper, requests, source=upper)
     strips = [
-        strip_of(job, *_profiles(job, opening, given), given.name)
+        _wrinkle_in(job, opening, given)
         for opening, given in zip(openings, chosen.strips, strict=True)
     ]
     stitched = stitch(openings, strips, tolerance=job.tolerance)
@@ -148,9 +151,66 @@ def wrinkle_upper(job: Job, chosen: Chosen) -> WrinkledUpper:
         chosen.upper,
         tuple(openings),
         tuple(_facing_out(strips, openings)),
-        tuple(_facing_out(_bands(job, stitched), openings)),
+        tuple(_facing_out(_bands(job, stitched.report.bands), openings)),
         stitched,
+        _waves_of(job),
     )
+
+
+def tried_on_upper(
+    job: Job, chosen: Chosen, made: WrinkledUpper, names: Collection[str]
+) -> tuple[TriangulatedStrip, ...]:
+    """Makes some strips of an upper anew under other settings; nothing is sewn.
+
+    An opening that the settings do not change is kept. Bands are made only where their rails are
+    others: of every wrinkle that is asked for or whose band is, since a wave whose bands fold over
+    cannot be made.
+
+    Args:
+        job: the settings.
+        chosen: the rails and the upper.
+        made: the upper as it was made before.
+        names: of the strips and bands that are asked for.
+
+    Raises:
+        InputError: as ``wrinkle_upper``.
+        CadError: a strip or a band has no valid surface.
+    """
+    from wrinkle_cad.cad.upper.bands import band_name, bands_of
+    from wrinkle_cad.cad.upper.carve import carve_shapes
+
+    assert chosen.upper is not None
+    upper = chosen.upper.shape
+    requests = [_request(job, given) for given in chosen.strips]
+    before = [opening.request for opening in made.openings]
+    is_kept = all(map(_opens_alike, requests, before))
+    openings = made.openings if is_kept else carve_shapes(upper, requests, source=upper)
+    # Where neither openings nor waves are others the bands' rails are what they were.
+    has_bands = not is_kept or _waves_of(job) != made.waves
+    found: list[TriangulatedStrip] = []
+    for opening, given in zip(openings, chosen.strips, strict=True):
+        own = {strip_name(job, given.name)}
+        own |= {band_name(name, rail) for name in tuple(own) for rail in "PQ"}
+        if own.isdisjoint(names):
+            continue
+        strip = _wrinkle_in(job, opening, given)
+        found.append(strip)
+        if has_bands:
+            found.extend(_bands(job, bands_of(opening, strip, job.tolerance)))
+    return tuple(strip for strip in _facing_out(found, openings) if strip.name in names)
+
+
+def _opens_alike(request: CarveRequest, other: CarveRequest) -> bool:
+    """Whether two requests for the same rails cut the same opening, to within the tolerance."""
+    return (request.margin, request.fade) == (other.margin, other.fade)
+
+
+def _waves_of(job: Job) -> tuple[object, ...]:
+    return (job.waves, job.height, job.phase_deg, job.fade, job.side)
+
+
+def _wrinkle_in(job: Job, opening: Opening, given: StripInput) -> WrinkleStrip:
+    return strip_of(job, *_profiles(job, opening, given), given.name)
 
 
 def _facing_out(strips: Iterable[Strip], openings: Sequence[Opening]) -> Iterator[Strip]:
@@ -200,7 +260,7 @@ def _profiles(job: Job, opening: Opening, given: StripInput) -> tuple[object, ob
     )
 
 
-def _bands(job: Job, stitched: Stitched) -> tuple[TriangulatedStrip, ...]:
+def _bands(job: Job, bands: Iterable[Band]) -> tuple[TriangulatedStrip, ...]:
     material = material_of(job, limits_of(job))
     return tuple(
         TriangulatedStrip(
@@ -215,5 +275,5 @@ def _bands(job: Job, stitched: Stitched) -> tuple[TriangulatedStrip, ...]:
             color=settings.BAND_COLOR,
             stock=Stock(**material),
         )
-        for band in stitched.report.bands
+        for band in bands
     )

@@ -7,8 +7,8 @@ opening; anywhere else that would leave a slit.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
 from functools import partial
 from typing import Protocol
 
@@ -90,6 +90,36 @@ def side_curve(edges: Sequence[TopoDS_Edge], name: str) -> Directrix:
 def _straight(start: Floats, end: Floats) -> TopoDS_Edge:
     points = (gp_Pnt(*start.tolist()), gp_Pnt(*end.tolist()))
     return BRepBuilderAPI_MakeEdge(*points).Edge()
+
+
+def band_name(strip: str, rail: str) -> str:
+    """Returns what the band of a strip along one of its rails is called.
+
+    >>> band_name("vamp", "P")
+    'vamp band P'
+    """
+    return f"{strip} band {rail}"
+
+
+def bands_of(opening: Opening, strip: StripLike, tolerance: float) -> Iterator[Band]:
+    """Returns the bands between an opening and a strip, under their names.
+
+    Args:
+        opening: what was carved.
+        strip: between its profiles.
+        tolerance: mm; chords of the bands along the opening.
+
+    Raises:
+        InputError: as ``make_band``.
+    """
+    for i, (profile, samples) in enumerate(
+        ((strip.p, strip.p_samples), (strip.q, strip.q_samples))
+    ):
+        band = make_band(
+            opening, i, profile, samples, tolerance=tolerance, price=strip.triangulation.price
+        )
+        if band is not None:
+            yield replace(band, name=band_name(strip.name, band.name))
 
 
 def make_band(

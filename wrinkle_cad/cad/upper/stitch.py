@@ -21,7 +21,7 @@ from wrinkle_cad.options.checking import check_numbers
 from wrinkle_cad.options.signature import knows_its_options
 from wrinkle_cad.strip.portable import norm
 
-from .bands import Band, StripLike, check_beside, make_band
+from .bands import Band, StripLike, band_name, check_beside, make_band
 from .border_check import compared_border
 from .carve import carve_shapes
 from .end_fans import end_fan
@@ -220,9 +220,9 @@ def _all_faces(
                 ends.append(_side_ends(edges, profile, "PQ"[i]))
             band = make_band(opening, i, profile, samples, tolerance=tolerance, price=price)
             if band is not None:
-                part = f"{name} band {band.name}"
-                bands.append(replace(band, name=part))
-                pieces.append((part, faces_of(band.shell)))
+                band = replace(band, name=band_name(name, band.name))
+                bands.append(band)
+                pieces.append((band.name, faces_of(band.shell)))
         both_ends = ((0, opening.start_edges), (1, opening.end_edges)) if len(ends) == 2 else ()
         for at, edges in both_ends:
             bridge = np.array([strip.p_samples.points[-at], strip.q_samples.points[-at]])
