@@ -103,8 +103,8 @@ Energy = Literal["hinge", "paper"]
 """How bending is measured."""
 Ends = Literal["fixed", "free"]
 """Whether a strip has all of its rails, or begins and ends where that is best."""
-Surface = Literal["cones", "facets"]
-"""Faces of a strip: their banks are the exact curves, or planar triangles."""
+Surface = Literal["cones", "smooth", "facets"]
+"""Faces of a strip: cones whose banks are the exact curves, few smooth ones, planar triangles."""
 StepSchema = Literal["AP214", "AP242"]
 Unit = Literal["mm", "cm", "m", "inch", "ft"]
 """Units of length that a file may have."""

@@ -50,7 +50,10 @@ class StripSettings:
     )
     surface: settings.Surface = field(
         default=settings.SURFACE,
-        metadata=option("its faces: cones, whose banks are the exact curves, or flat facets"),
+        metadata=option(
+            "its faces: cones, whose banks are the exact curves; few smooth ones with the same"
+            " banks; or flat facets"
+        ),
     )
     criteria: tuple[settings.Criterion, ...] = field(
         default=settings.CRITERIA,

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import contextlib
 from copy import copy
 from dataclasses import fields, replace
 from functools import cached_property
@@ -13,12 +12,13 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from wrinkle_cad import settings
-from wrinkle_cad.errors import CadError, Finding
+from wrinkle_cad.errors import Finding
 from wrinkle_cad.options.checking import check_known
 from wrinkle_cad.options.signature import takes_options_of
 from wrinkle_cad.pattern.piece.options import PatternArguments, PieceSettings, SurfaceSide
 from wrinkle_cad.strip.convexity import validity_matrix
 from wrinkle_cad.strip.curve.polyline import polyline_length
+from wrinkle_cad.strip.flat.smooth_unrolling import unroll_smooth
 from wrinkle_cad.strip.flat.unrolling import Unrolling, unroll, unroll_cones
 from wrinkle_cad.strip.invalid_runs import find_invalid_runs
 from wrinkle_cad.strip.triangulation import Triangulation, triangulate
@@ -28,6 +28,7 @@ from .exact_surface import exact_surface, rail_curve
 from .gap_report import GapReport, gap_reports
 from .grain import Stock, inner_radii
 from .loudness import warn_of
+from .smooth_surface import SmoothSurface, smooth_surface
 from .strip_findings import (
     FOLDED,
     area_findings,
@@ -66,7 +67,7 @@ class TriangulatedStrip:
         tolerance: mm; the chord tolerance of the samples.
         name: label of the surface and of the pattern.
         color: of the surface, (red, green, blue) from 0 to 1.
-        surface: ``cones`` or ``facets``.
+        surface: ``cones``, ``smooth`` or ``facets``.
         role: ``strip``, or ``band`` between a strip and the body.
         stock: thickness, K-factor and grain of the material, and the side of it that the surface
             is.
@@ -125,7 +126,9 @@ class TriangulatedStrip:
         split, an area known to no better than 1e-6. A ``WrinkleWarning`` says so as well.
         """
         flat = flat_findings(self.name, self.unrolling)
-        return (*self._noticed, *self._judged, *flat, *area_findings(self.name, self.area_error))
+        smooth = self._smooth.findings if self.surface == "smooth" else ()
+        unsure = area_findings(self.name, self.area_error)
+        return (*self._noticed, *self._judged, *smooth, *flat, *unsure)
 
     @cached_property
     def _judged(self) -> tuple[Finding, ...]:
@@ -144,18 +147,29 @@ class TriangulatedStrip:
         """The surface as the kernel's own shell, made once per kind and shared."""
         kind = self.surface if surface is None else surface
         if kind not in self._shells:
-            from wrinkle_cad.cad.faces.shell import build_shell
-
-            self._shells[kind] = build_shell(
-                self.triangulation, self.p, self.q, self.p_samples, self.q_samples, kind
-            )
+            self._shells[kind] = self._built(kind)
         return self._shells[kind]
+
+    def _built(self, kind: settings.Surface) -> TopoDS_Shell:
+        from wrinkle_cad.cad.faces.shell import build_shell
+
+        if kind == "smooth":
+            made = self._smooth.made
+            return self.topods_shell("cones") if made is None else made[0]
+        return build_shell(self.triangulation, self.p, self.q, self.p_samples, self.q_samples, kind)
+
+    @cached_property
+    def _smooth(self) -> SmoothSurface:
+        rails, samples = (self.p, self.q), (self.p_samples, self.q_samples)
+        found = smooth_surface(self.name, rails, samples, self.triangulation, self.ruled)
+        self._tell(found.findings)
+        return found
 
     def shell(self, surface: settings.Surface | None = None) -> Shell:
         """The surface as a build123d ``Shell`` with its label and color.
 
         Args:
-            surface: ``cones`` or ``facets``; the strip's own when None.
+            surface: ``cones``, ``smooth`` or ``facets``; the strip's own when None.
 
         Raises:
             CadError: the kernel could not build a valid shell.
@@ -169,7 +183,7 @@ class TriangulatedStrip:
 
         Args:
             rail: ``P`` or ``Q``.
-            arcs_mm: (k,) along the edge: the curve for cones, its chords for facets.
+            arcs_mm: (k,) along the edge: the curve, or its chords for facets.
 
         Returns:
             (k, 3) float64, mm.
@@ -187,7 +201,7 @@ class TriangulatedStrip:
 
     @property
     def unrolling(self) -> Unrolling:
-        """The strip laid flat: cones or facets, as the strip's surface is."""
+        """The strip laid flat, as its surface is: smooth pieces, cones or facets."""
         return self._unrolled
 
     @cached_property
@@ -199,14 +213,11 @@ class TriangulatedStrip:
     def _laid_flat(self) -> Unrolling:
         if self.surface == "facets":
             return unroll(self.triangulation)
-        return unroll_cones(
-            self.triangulation,
-            self.p_samples,
-            self.q_samples,
-            self.p.point_at,
-            self.q.point_at,
-            tolerance=settings.FLAT_LINE_PER_TOLERANCE * self.tolerance,
-        )
+        tolerance = settings.FLAT_LINE_PER_TOLERANCE * self.tolerance
+        samples, curves = (self.p_samples, self.q_samples), (self.p.point_at, self.q.point_at)
+        if self.surface == "smooth" and self._smooth.made is not None:
+            return unroll_smooth(self._smooth.made[1], samples, curves, tolerance=tolerance)
+        return unroll_cones(self.triangulation, *samples, *curves, tolerance=tolerance)
 
     @cached_property
     def valid(self) -> NDArray[np.bool_]:
@@ -307,24 +318,14 @@ class TriangulatedStrip:
 
     @cached_property
     def _measured_area(self) -> tuple[float, float]:
-        area, error = self._integrated_area()
+        from wrinkle_cad.cad.kernel.measures import area_as_exact_as_can_be
+
+        area, error = area_as_exact_as_can_be(self.topods_shell())
         self._tell(area_findings(self.name, error))
         return area, error
 
-    def _integrated_area(self) -> tuple[float, float]:
-        """The area as exactly as it can be had: a sound strip does not fail for its last digits."""
-        from wrinkle_cad.cad.kernel.measures import face_areas
-        from wrinkle_cad.cad.kernel.topology import faces_of
-
-        faces = faces_of(self.topods_shell())
-        *tried, coarsest = settings.AREA_RELATIVE_ERRORS
-        for error in tried:
-            with contextlib.suppress(CadError):
-                return sum(face_areas(faces, relative_error=error)), error
-        return sum(face_areas(faces, relative_error=coarsest)), coarsest
-
     def _rail_lengths(self) -> tuple[float, float]:
-        if self.surface == "cones":
+        if self.surface != "facets":
             return self.p.length, self.q.length
         return polyline_length(self.triangulation.p), polyline_length(self.triangulation.q)
 

@@ -16,15 +16,14 @@ from OCP.BRep import BRep_Builder
 from OCP.Geom import Geom_BSplineSurface
 from OCP.Geom2d import Geom2d_BSplineCurve, Geom2d_Line
 from OCP.gp import gp_Dir2d, gp_Pnt2d
-from OCP.TopAbs import TopAbs_FORWARD, TopAbs_REVERSED
-from OCP.TopoDS import TopoDS_Edge, TopoDS_Face, TopoDS_Vertex
+from OCP.TopoDS import TopoDS_Face, TopoDS_Vertex
 
 from wrinkle_cad import settings
 from wrinkle_cad.cad.kernel.evaluation import PoleCurve
 from wrinkle_cad.cad.kernel.splines import make_curve_2d, make_surface
-from wrinkle_cad.strip.portable import dot
 
 from .face_borders import Border, BorderEdge
+from .on_surface import degenerated_edge, on_ruling, put_on_face
 from .plane_faces import cross_rows, make_wire
 
 Floats = NDArray[np.float64]
@@ -62,11 +61,12 @@ def cone_face(
         surface.InsertUKnot(knot, 1, settings.KNOT_GAP, False)
     builder.MakeFace(face, surface, settings.CONFUSION)
     low, high = (1.0 if not from_apex else 0.0), (1.0 if not to_apex else 0.0)
-    _put_on_face(bank.edge, _straight(first, last, (first, low), (last, high)), face)
+    put_on_face(bank.edge, _straight(first, last, (first, low), (last, high)), face)
     for border, u, base in ((to_apex, last, shape.poles[-1]), (from_apex, first, shape.poles[0])):
         for item in border:
-            _put_on_face(item.edge, _on_ruling(item.shape, u, base, apex), face)
-    tip = _degenerated_edge(first, last, vertex, face)
+            put_on_face(item.edge, on_ruling(item.shape, u, base, apex), face)
+    along = Geom2d_Line(gp_Pnt2d(0.0, 1.0), gp_Dir2d(1.0, 0.0))
+    tip = degenerated_edge(along, (first, last), vertex, face)
     builder.Add(face, make_wire((bank, *to_apex, tip, *from_apex)))
     return face
 
@@ -131,14 +131,6 @@ def _chord_poles(shape: PoleCurve, apex: Floats, *, is_start: bool) -> tuple[int
     return degree, apex + (share * padded[:-1] + (1.0 - share) * padded[1:]) / weights[:, None]
 
 
-def _on_ruling(shape: PoleCurve, u: float, base: Floats, apex: Floats) -> Geom2d_BSplineCurve:
-    """Returns the parameter curve of an edge along the ruling at u, each pole dropped onto it."""
-    way = apex - base
-    across = dot(shape.poles - base, way) / dot(way, way)
-    places = np.column_stack((np.full(len(across), u), across))
-    return make_curve_2d(places, shape.knots, shape.multiplicities, shape.degree, shape.weights)
-
-
 def _straight(
     first: float, last: float, start: tuple[float, float], end: tuple[float, float]
 ) -> Geom2d_Line | Geom2d_BSplineCurve:
@@ -147,25 +139,3 @@ def _straight(
         return Geom2d_Line(gp_Pnt2d(0.0, start[1]), gp_Dir2d(1.0, 0.0))
     knots, multiplicities = np.array([first, last]), np.array([2, 2])
     return make_curve_2d(np.array([start, end]), knots, multiplicities, 1)
-
-
-def _put_on_face(
-    edge: TopoDS_Edge, curve: Geom2d_Line | Geom2d_BSplineCurve, face: TopoDS_Face
-) -> None:
-    BRep_Builder().UpdateEdge(edge, curve, face, settings.CONFUSION)
-
-
-def _degenerated_edge(
-    first: float, last: float, vertex: TopoDS_Vertex, face: TopoDS_Face
-) -> BorderEdge:
-    builder, edge = BRep_Builder(), TopoDS_Edge()
-    builder.MakeEdge(edge)
-    builder.UpdateEdge(
-        edge, Geom2d_Line(gp_Pnt2d(0.0, 1.0), gp_Dir2d(1.0, 0.0)), face, settings.CONFUSION
-    )
-    builder.Add(edge, vertex.Oriented(TopAbs_FORWARD))
-    builder.Add(edge, vertex.Oriented(TopAbs_REVERSED))
-    builder.Range(edge, first, last)
-    builder.Degenerated(edge, True)
-    nothing = PoleCurve(1, np.array([first, last]), np.array([2, 2]), np.empty((0, 3)), None)
-    return BorderEdge(edge, nothing, vertex, vertex, is_forward=False)

@@ -13,6 +13,9 @@ over; their rail is then the border.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from typing import Final
+
 import numpy as np
 from numpy.typing import NDArray
 from OCP.BRep import BRep_Builder
@@ -26,17 +29,23 @@ from wrinkle_cad.errors import CadError, InputError
 from wrinkle_cad.strip.curve.sampling import Samples
 from wrinkle_cad.strip.flat.planes import planar_runs, spans_of
 from wrinkle_cad.strip.flat.unrolling import exact_rails
+from wrinkle_cad.strip.rulings.smooth_path import PatchRun
 from wrinkle_cad.strip.triangulation import P_STEP, Q_STEP, Triangulation
 
 from .cone_faces import cone_face
 from .face_borders import Border, BorderEdge, flipped
-from .fans import Fan, FlatPart, fan_between, fans_of, flat_part, thin_triangles
+from .fans import Bank, Fan, FlatPart, fan_between, fans_of, flat_part, thin_triangles
 from .plane_faces import is_plane_sector, plane_face
+from .ruled_faces import ruled_face
 from .skeleton import Skeleton
 from .slivers import cut_at_knots
 
 Floats = NDArray[np.float64]
 Bools = NDArray[np.bool_]
+
+STEP: Final = "make the faces of a strip"
+BUILT: Final = ("cones", "facets")
+"""What a triangulation alone is enough for."""
 
 
 def build_shell(
@@ -61,33 +70,77 @@ def build_shell(
         InputError: an unknown kind, or samples that are not those of the triangulation.
         CadError: no face is left, or the shell is not valid.
     """
-    if kind not in settings.SURFACES:
-        raise InputError(f"surface cannot be {kind!r}: give {' or '.join(settings.SURFACES)}.")
-    _check_samples(triangulation, p_samples, q_samples)
-    has_curves = kind == "cones"
-    samples = p_samples, q_samples
-    skeleton = Skeleton(triangulation, (p, q), samples, has_curves=has_curves)
-    corners = (_corners(p, p_samples), _corners(q, q_samples))
+    if kind not in BUILT:
+        raise InputError(f"surface cannot be {kind!r}: give {' or '.join(BUILT)}.")
+    faces = build_faces(triangulation, (p, q), (p_samples, q_samples), has_curves=kind == "cones")
+    return shell_of([face for row in faces.values() for face in row])
+
+
+def build_faces(
+    triangulation: Triangulation,
+    rails: tuple[Directrix, Directrix],
+    samples: tuple[Samples, Samples],
+    *,
+    has_curves: bool,
+    patches: Sequence[PatchRun] = (),
+) -> dict[int, list[TopoDS_Shape]]:
+    """Returns the faces of a strip, which share their edges, in order along it.
+
+    Args:
+        triangulation: the strip between the samples.
+        rails: P and Q.
+        samples: vertices on P and on Q.
+        has_curves: whether their borders are the rails, or chords.
+        patches: steps that are one ruled face each.
+
+    Returns:
+        By the bridge before a step or a run of steps: its faces.
+
+    Raises:
+        InputError: samples that are not those of the triangulation.
+        CadError: no face is left.
+    """
+    _check_samples(triangulation, *samples)
+    skeleton = Skeleton(triangulation, rails, samples, has_curves=has_curves)
+    corners = (_corners(rails[0], samples[0]), _corners(rails[1], samples[1]))
     runs = np.full(len(triangulation.steps), -1, dtype=np.int64)
     if has_curves:
-        cells = exact_rails((p.point_at, q.point_at), samples)
-        parameters = p_samples.parameters, q_samples.parameters
+        cells = exact_rails((rails[0].point_at, rails[1].point_at), samples)
+        parameters = samples[0].parameters, samples[1].parameters
         runs = planar_runs(triangulation, cells, parameters, settings.PLANE_GAP)
-    with kernel_step("make the faces of a strip"):
-        thin = thin_triangles(triangulation, skeleton.limit)
+    patched = np.zeros(len(runs), dtype=np.bool_)
+    for run in patches:
+        patched[run.early : run.late] = True
+    runs[patched] = -1
+    with kernel_step(STEP):
+        thin = thin_triangles(triangulation, skeleton.limit) & ~patched
         spans = [_trimmed(triangulation, skeleton, thin, *span) for span in spans_of(runs)]
         parts = [flat_part(triangulation, corners, *span) for span in spans if span[0] < span[1]]
-        fans = fans_of(triangulation, corners, thin, runs >= 0, is_merged=has_curves)
+        fans = fans_of(triangulation, corners, thin, (runs >= 0) | patched, is_merged=has_curves)
         kept = [fan for fan in fans if not (fan.is_thin and skeleton.leave_out(fan))]
-        faces = _faces_in_order(parts, kept, skeleton)
+        faces = {part.early: [_plane_of(part, skeleton)] for part in parts}
+        faces |= {fan.early: _faces_of(fan, skeleton) for fan in kept}
+        faces |= {run.early: [_patch_face(run, triangulation, skeleton)] for run in patches}
     if not faces:
         raise CadError(
-            "make the faces of a strip",
+            STEP,
             f"every face is thinner than {skeleton.limit:.1e} mm. Sample the rails more finely.",
         )
-    shell = _shell_of(faces)
+    return dict(sorted(faces.items()))
+
+
+def shell_of(faces: Sequence[TopoDS_Shape]) -> TopoDS_Shell:
+    """Returns the shell of faces that share their edges.
+
+    Raises:
+        CadError: it does not pass the kernel's own check.
+    """
+    builder, shell = BRep_Builder(), TopoDS_Shell()
+    builder.MakeShell(shell)
+    for face in faces:
+        builder.Add(shell, face)
     advice = "Sample the rails with a smaller tolerance, or move them apart."
-    check_valid(shell, "make the faces of a strip", advice)
+    check_valid(shell, STEP, advice)
     return shell
 
 
@@ -125,15 +178,6 @@ def _trimmed(
     return first, last
 
 
-def _faces_in_order(
-    parts: list[FlatPart], fans: list[Fan], skeleton: Skeleton
-) -> list[TopoDS_Shape]:
-    """Returns the faces of flat parts and fans along the strip."""
-    faces = {part.early: [_plane_of(part, skeleton)] for part in parts}
-    faces |= {fan.early: _faces_of(fan, skeleton) for fan in fans}
-    return [face for _, row in sorted(faces.items()) for face in row]
-
-
 def _plane_of(part: FlatPart, skeleton: Skeleton) -> TopoDS_Shape:
     borders: dict[int, list[BorderEdge]] = {P_STEP: [], Q_STEP: []}
     for bank in part.banks:
@@ -164,9 +208,12 @@ def _faces_of(fan: Fan, skeleton: Skeleton) -> list[TopoDS_Shape]:
     return [face if side == P_STEP else face.Reversed() for face in faces]
 
 
-def _shell_of(faces: list[TopoDS_Shape]) -> TopoDS_Shell:
-    builder, shell = BRep_Builder(), TopoDS_Shell()
-    builder.MakeShell(shell)
-    for face in faces:
-        builder.Add(shell, face)
-    return shell
+def _patch_face(run: PatchRun, triangulation: Triangulation, skeleton: Skeleton) -> TopoDS_Shape:
+    first, last = triangulation.bridges[[run.early, run.late]]
+    (p_bank,), (q_bank,) = (
+        skeleton.bank(Bank(side, int(first[side]), int(last[side]))) for side in (P_STEP, Q_STEP)
+    )
+    corners = [skeleton.corner(0, int(i)) for i in (first[0], last[0])]
+    meeting = (skeleton.vertex(corners[0]), skeleton.vertex(corners[1]))
+    early, late = skeleton.bridge(run.early), skeleton.bridge(run.late)
+    return ruled_face(run.patch, (p_bank, q_bank), early, late, meeting)

@@ -67,15 +67,13 @@ class DevelopedRail:
     """(l,) float64, mm: distance of the point from the apex."""
     arc: FloatArray
     """(l,) float64, mm: length along the rail, from its start."""
-    area: float
-    """mm2: of all cones."""
+    area: FloatArray
+    """(k,) float64, mm2: of the cone over each segment."""
     back: FloatArray
     """(k,) float64, rad: how much of its angle each segment sweeps backwards."""
 
 
-NO_RAIL: Final = DevelopedRail(
-    np.zeros(0, dtype=np.int64), np.zeros(0), np.zeros(0), np.zeros(0), 0.0, np.zeros(0)
-)
+NO_RAIL: Final = DevelopedRail(np.zeros(0, dtype=np.int64), *(np.zeros(0) for _ in range(5)))
 """What a rail that is a point develops to."""
 
 
@@ -228,18 +226,18 @@ def _integrate(
     normals: FloatArray,
     is_plane: NDArray[np.bool_],
     slack: Pair,
-) -> tuple[FloatArray, FloatArray, float]:
+) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Panels so narrow that length, angle and area have settled and the flat curve is followed.
 
     Returns (l, 4) rows of segment, angle since its start, radius, length of the panel before;
-    (k,) backward angles; the area.
+    (k,) backward angles; (k,) areas.
     """
     rows = np.empty((1024, 4))
-    back = np.zeros(len(normals))
+    back, area = np.zeros(len(normals)), np.zeros(len(normals))
     ends = np.empty(DEEPEST + 2)
     panels = np.empty((DEEPEST + 2, 4))
     depths = np.empty(DEEPEST + 2, dtype=np.int64)
-    count, angle, area = 0, 0.0, 0.0
+    count, angle = 0, 0.0
     for cell in range(len(segment)):
         k = segment[cell]
         if cell > 0 and segment[cell - 1] != k:
@@ -264,7 +262,7 @@ def _integrate(
                 top += 1
                 continue
             angle += left[1] + right[1]
-            area += left[2] + right[2]
+            area[k] += left[2] + right[2]
             back[k] += left[3] + right[3]
             if count == len(rows):
                 grown = np.empty((2 * count, 4))

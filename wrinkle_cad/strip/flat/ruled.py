@@ -24,6 +24,7 @@ Floats = npt.NDArray[np.float64]
 
 PANELS: Final = 4
 """Gauss and Legendre's rule is applied to so many parts of each stretch between exact rulings."""
+NO_PLACES: Final = np.zeros(0)
 
 
 def _integrals() -> Floats:
@@ -54,15 +55,27 @@ class FlatPiece:
     """(k, 2) float64, mm; their ends on P."""
     q: Floats
     """(k, 2) float64, mm; their ends on Q."""
-    p_length: float
-    """mm; of the piece's stretch of P."""
-    q_length: float
-    """mm; of its stretch of Q."""
+    p_arc: Floats
+    """(k,) float64, mm; length along P from the piece's start."""
+    q_arc: Floats
+    """(k,) float64, mm; along Q."""
     area: float
     """mm2; of the flat piece."""
 
+    @property
+    def p_length(self) -> float:
+        """mm; of the piece's stretch of P."""
+        return float(self.p_arc[-1])
 
-def lay_flat(family: RulingFamily, start: Floats) -> FlatPiece:
+    @property
+    def q_length(self) -> float:
+        """mm; of its stretch of Q."""
+        return float(self.q_arc[-1])
+
+
+def lay_flat(
+    family: RulingFamily, start: Floats, places: Floats = NO_PLACES, panels: int = PANELS
+) -> FlatPiece:
     """Returns a ruled piece in the plane, Q on the left of P.
 
     Args:
@@ -70,8 +83,23 @@ def lay_flat(family: RulingFamily, start: Floats) -> FlatPiece:
         start: (2, 2) float64, mm; where the first ruling's ends on P and on Q lie. Their distance
             is the ruling's length; of a first ruling without length the second point is not used,
             and it points along y.
+        places: (k,) float64, from 0 to 1; of further rulings that the result is to have.
+        panels: each stretch between exact rulings is integrated in so many parts.
+
+    Example:
+        >>> from wrinkle_cad.strip.rulings.rail_curve import RailCurve
+        >>> def line(y):
+        ...     return RailCurve(
+        ...         lambda u: np.stack((u, 0 * u + y, 0 * u), axis=-1),
+        ...         lambda u: np.stack((1 + 0 * u, 0 * u, 0 * u), axis=-1),
+        ...         (0.0, 40.0),
+        ...     )
+        >>> ends, places = np.array([[0.0, 0.0], [40.0, 40.0]]), np.array([0.0, 1.0])
+        >>> strap = RulingFamily(line(0), line(9), 0, 0, ends, places, 0 * places, 0 * places)
+        >>> round(lay_flat(strap, np.array([[0.0, 0.0], [0.0, 9.0]])).area, 9)
+        360.0
     """
-    edges = _edges(family)
+    edges = np.union1d(_edges(family, panels), places)
     half = np.diff(edges)[:, None] / 2.0
     middle = (edges[:-1] + edges[1:])[:, None] / 2.0
     at = (middle + half * NODES).ravel()
@@ -91,15 +119,14 @@ def lay_flat(family: RulingFamily, start: Floats) -> FlatPiece:
     p_space, q_space = family.points_at(edges)
     reach = lengths(q_space - p_space)[:, None]
     q = p + reach * np.stack((cos(final), sin(final)), axis=1)
-    whole = [
-        float(_running(values, half).at_edges[-1])
-        for values in (motion.p_speed, motion.q_speed, motion.area)
-    ]
-    return FlatPiece(edges, p, q, *whole)
+    p_arc, q_arc, area = (
+        _running(values, half).at_edges for values in (motion.p_speed, motion.q_speed, motion.area)
+    )
+    return FlatPiece(edges, p, q, p_arc, q_arc, float(area[-1]))
 
 
-def _edges(family: RulingFamily) -> Floats:
-    share = np.arange(PANELS) / PANELS
+def _edges(family: RulingFamily, panels: int) -> Floats:
+    share = np.arange(panels) / panels
     cells = family.places[:-1, None] + np.diff(family.places)[:, None] * share
     return np.append(cells.ravel(), family.places[-1])
 

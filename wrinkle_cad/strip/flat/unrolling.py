@@ -173,9 +173,8 @@ def unroll_cones(
         raise InputError(f"tolerance cannot be {tolerance} mm: give a finite length above 0 mm.")
     _check_samples("P", p_samples, triangulation.p)
     _check_samples("Q", q_samples, triangulation.q)
-    strip = _Chain(triangulation)
-    flat_p, flat_q = _both_developed(strip, (p_samples, q_samples), (p_at, q_at), tolerance)
-    return _cones_in_plane(triangulation.steps, strip, flat_p, flat_q, tolerance)
+    chain = developed_chain(triangulation, (p_samples, q_samples), (p_at, q_at), tolerance)
+    return chain.in_plane(tolerance)
 
 
 def backward_sweeps(
@@ -219,39 +218,67 @@ def _both_developed(
     )
 
 
-def _cones_in_plane(
-    steps: NDArray[np.int8],
-    strip: _Chain,
-    flat_p: DevelopedRail,
-    flat_q: DevelopedRail,
+@dataclass(frozen=True, slots=True, eq=False)
+class DevelopedChain:
+    """Cones over the segments of both rails, and the order in which they follow each other."""
+
+    steps: NDArray[np.int8]
+    """(m+n-2,) int8; P_STEP or Q_STEP: the rail that the next segment lies on."""
+    bridges: IndexArray
+    """(m+n-2, 2) int64; the bridge before each step."""
+    radii: FloatArray
+    """(m+n-2,) float64, mm; length of the bridge after each step."""
+    start: float
+    """mm; length of the first bridge."""
+    rails: tuple[DevelopedRail, DevelopedRail]
+    """P and Q."""
+
+    def in_plane(self, tolerance: float) -> Unrolling:
+        """Returns the cones side by side; lines follow the rails to ``tolerance`` mm."""
+        is_p, (flat_p, flat_q) = self.steps == P_STEP, self.rails
+        angles = np.empty(len(is_p))
+        angles[is_p] = flat_p.angle[_last_of_segments(flat_p)]
+        angles[~is_p] = flat_q.angle[_last_of_segments(flat_q)]
+        p, q, p_from, q_from = place_chain(self.steps, angles, self.radii, self.start)
+        i, j = self.bridges.T
+        p_line, p_arc, p_index = _line(p, q[j[is_p]], p_from, flat_p, tolerance)
+        q_line, q_arc, q_index = _line(q, p[i[~is_p]], -q_from, flat_q, tolerance, turn=-1)
+        limit = TURNED_BACK_PER_TOLERANCE * tolerance
+        backs = (self.radii[is_p] * flat_p.back, self.radii[~is_p] * flat_q.back)
+        return Unrolling(
+            p=p,
+            q=q,
+            p_line=p_line,
+            q_line=q_line,
+            p_arc=p_arc,
+            q_arc=q_arc,
+            p_index=p_index,
+            q_index=q_index,
+            p_length=float(p_arc[-1]),
+            q_length=float(q_arc[-1]),
+            area=math.fsum([*flat_p.area.tolist(), *flat_q.area.tolist()]),
+            overlaps=is_overlapping(p, q),
+            turned_back_count=int(sum(np.sum(back > limit) for back in backs)),
+        )
+
+
+def developed_chain(
+    triangulation: Triangulation,
+    samples: tuple[Samples, Samples],
+    curves: tuple[PointAt, PointAt],
     tolerance: float,
-) -> Unrolling:
-    """Puts the developed cones of both rails side by side."""
-    is_p = strip.is_p
-    angles = np.empty(len(is_p))
-    angles[is_p] = flat_p.angle[_last_of_segments(flat_p)]
-    angles[~is_p] = flat_q.angle[_last_of_segments(flat_q)]
-    p, q, p_from, q_from = place_chain(steps, angles, strip.radii, strip.start)
-    i, j = strip.bridges.T
-    p_line, p_arc, p_index = _line(p, q[j[is_p]], p_from, flat_p, tolerance)
-    q_line, q_arc, q_index = _line(q, p[i[~is_p]], -q_from, flat_q, tolerance, turn=-1)
-    limit = TURNED_BACK_PER_TOLERANCE * tolerance
-    backs = (strip.radii[is_p] * flat_p.back, strip.radii[~is_p] * flat_q.back)
-    return Unrolling(
-        p=p,
-        q=q,
-        p_line=p_line,
-        q_line=q_line,
-        p_arc=p_arc,
-        q_arc=q_arc,
-        p_index=p_index,
-        q_index=q_index,
-        p_length=float(p_arc[-1]),
-        q_length=float(q_arc[-1]),
-        area=flat_p.area + flat_q.area,
-        overlaps=is_overlapping(p, q),
-        turned_back_count=int(sum(np.sum(back > limit) for back in backs)),
-    )
+) -> DevelopedChain:
+    """Returns the cones of a strip, each developed about its apex.
+
+    Args:
+        triangulation: the strip.
+        samples: of P and of Q, its points.
+        curves: P and Q, from (k,) parameters to (k, 3) mm.
+        tolerance: mm; the flat lines will follow the flat curves at least this closely.
+    """
+    strip = _Chain(triangulation)
+    rails = _both_developed(strip, samples, curves, tolerance)
+    return DevelopedChain(triangulation.steps, strip.bridges, strip.radii, strip.start, rails)
 
 
 class _Chain:
