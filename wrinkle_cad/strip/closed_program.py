@@ -70,6 +70,7 @@ def decide_range(
     window: Window,
     charge: Floats,
     recorded: int,
+    grid: tuple[int, int],
 ) -> tuple[Floats, npt.NDArray[np.uint8], Floats]:
     """Finds the best path from every start (0, first), ... to any of the ends n further on.
 
@@ -84,11 +85,13 @@ def decide_range(
         charge: (parts,) for each step on Q that a path has fewer than 2 n from a start at 0 on.
         recorded: NOTHING; CROSSINGS: the costs of the P-steps as well; BUT_LAST: these, without
             what the bridges of sample m cost, and nothing else.
+        grid: at which samples of P they are written down: the first of them, less 1, and how far
+            they are apart.
 
     Returns:
         (starts, parts): the least cost from each start to any of the ends. (m, width) uint8: the
-        step to take at samples 1 to m of P, as decide_row writes it. (m, width, parts): from the
-        P-step that comes to each sample of P and column on; empty if not wanted.
+        step to take at samples 1 to m of P, as decide_row writes it. (samples, width, parts): from
+        the P-step that comes to each sample of the grid and column on; empty if not wanted.
     """
     m, n = p.shape[0], q.shape[1]
     planarity, nothing, energy = limits
@@ -104,10 +107,12 @@ def decide_range(
         if column < first + n or column >= first + n + many:
             ahead[c, 0] = NEVER
     choices = np.empty((m, count), dtype=np.uint8)
-    crossings = np.empty((m if recorded else 0, count, len(weights)))
+    offset, stride = grid
+    kept = (m - 1 - offset) // stride + 1 if recorded else 0
+    crossings = np.empty((kept, count, len(weights)))
     last = m - 1 if recorded == BUT_LAST else m
-    if recorded == BUT_LAST:
-        crossings[m - 1] = ahead
+    if recorded == BUT_LAST and (m - 1 - offset) % stride == 0:
+        crossings[kept - 1] = ahead
     for i in range(last, 0, -1):
         if i == last or left[i - 1] != left[i]:
             _columns_from(q, left[i - 1], columns, q_banks)
@@ -124,8 +129,8 @@ def decide_range(
         cost_row(view, banks, nothing, planarity, energy, costs)
         bar_row(view, Bars(bars.bridges[:, left[i - 1] :], bars.least_cosine), i - 1, costs)
         decide_row(weights, False, view, valid, costs, ahead, choices[i - 1])
-        if recorded:
-            crossings[i - 1] = ahead
+        if recorded and i > offset and (i - 1 - offset) % stride == 0:
+            crossings[(i - 1 - offset) // stride] = ahead
     found = np.zeros((many, len(weights)))
     for k in range(many):
         c = first + k - left[0]

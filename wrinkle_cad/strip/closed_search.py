@@ -14,10 +14,12 @@ started at the first of them, and bridges are barred that no path through the ot
 
 What each program finds out is a bound for the bridges as well: if the least cost of coming to a
 bridge and that of going on from it are together more than the best closed path costs, no better one
-has it. So the programs behind the first look at a corridor of bridges only (closed_corridor).
+has it. So the programs behind the first look at a corridor of bridges only, and the strip is begun
+where that is narrowest (closed_corridor).
 
-Starts are taken on the rail with fewer samples. Strips of 180 and 240 samples took one to four
-programs if smooth, up to forty if flat or noisy.
+Starts are taken on the rail with fewer samples. Of 64 strips of 180 and 240 samples, smooth ones
+took the time of 2 to 10 open searches, flat or noisy ones that of 7 to 13, and the same share at
+2,000 and 2,000 samples. Without bending and validity (least area) it may be 100.
 """
 
 from __future__ import annotations
@@ -32,8 +34,16 @@ import numpy as np
 import numpy.typing as npt
 
 from .bars import Bars, no_bars
-from .closed_corridor import Corridor
-from .closed_program import NEVER, NOTHING, Limits, decide_range, follow_around, whole_window
+from .closed_corridor import Around, Corridor, corridor_of, stride_of
+from .closed_program import (
+    CROSSINGS,
+    NEVER,
+    NOTHING,
+    Window,
+    decide_range,
+    follow_around,
+    whole_window,
+)
 from .objective import TIE, Weights
 
 Floats = npt.NDArray[np.float64]
@@ -60,130 +70,170 @@ class ClosedPath:
 class _Cost:
     """A cost that compares part by part, sums up to round-off."""
 
-    def __init__(self, parts: Floats, weights: Weights) -> None:
+    def __init__(self, parts: list[float], weights: Weights) -> None:
         self.parts, self.weights = parts, weights
 
     def __lt__(self, other: _Cost) -> bool:
         for mine, its, part in zip(self.parts, other.parts, self.weights, strict=True):
-            if abs(mine - its) > part[TIE] * (mine + its):
-                return bool(mine < its)
+            if mine != its and abs(mine - its) > part[TIE] * (mine + its):
+                return mine < its
         return False
+
+
+_Range = tuple[_Cost, int, int, list[_Cost]]
+"""Starts still to be searched: the least cost of any, the first, where to cut, the cost of each."""
 
 
 class _Search:
     """Branch and bound over the starts on the columns' rail."""
 
-    def __init__(
-        self,
-        p: Floats,
-        q: Floats,
-        weights: Weights,
-        limits: Limits,
-        bars: Bars,
-    ) -> None:
-        self.p, self.columns = p, np.ascontiguousarray(q.T)
-        self.weights, self.limits = weights, limits
-        self.bars = Bars(np.ascontiguousarray(bars.bridges), bars.least_cosine)
+    def __init__(self, around: Around, *, is_same_each_turn: bool) -> None:
+        self.around, self.is_same_each_turn = around, is_same_each_turn
+        self.seam = (0, 0)
         self.programs = 0
-        self.best: tuple[_Cost, int, Steps] | None = None
-        self.charge = np.zeros(len(weights))
+        self.best: tuple[_Cost, tuple[int, int], Steps] | None = None
+        self.charge = np.zeros(len(around.weights))
         self.corridor: Corridor | None = None
+        self.possible = np.zeros((0, 0), dtype=np.bool_)
 
     @property
     def cost(self) -> _Cost:
         """Of the best closed path, once the search has run."""
         assert self.best is not None
-        own = self.best[0].parts - self.columns.shape[1] * self.charge
-        return _Cost(own, self.weights)
+        own = np.array(self.best[0].parts) - self.around.shape[1] * self.charge
+        return _Cost(own.tolist(), self.around.weights)
 
     @property
-    def found(self) -> tuple[int, Steps]:
+    def found(self) -> tuple[tuple[int, int], Steps]:
         """The start of the best closed path, and its steps."""
         assert self.best is not None
         return self.best[1:]
 
     def run(self) -> None:
         """Finds the best closed path."""
-        ranges: list[tuple[_Cost, int, int, list[_Cost]]] = []
-        self._search_range(0, self.columns.shape[1], ranges)
+        ranges: list[_Range] = []
+        self._search_range(0, self.around.shape[1], ranges)
         if ranges:
-            ranges = self._charged_anew(ranges[0][0])
+            ranges = self._charged_anew(np.array(ranges[0][0].parts))
         while ranges:
             bound, first, cut, costs = heapq.heappop(ranges)
             if not self._is_open(bound):
                 break
             starts = [first + c for c, cost in enumerate(costs) if self._is_open(cost)]
+            if self.corridor is not None:
+                starts = [j for j in starts if self.possible[0, j]]
             for part in ([j for j in starts if j < cut], [j for j in starts if j >= cut]):
                 if part:
                     self._search_range(part[0], part[-1] + 1, ranges)
 
-    def _charged_anew(self, bound: _Cost) -> list[tuple[_Cost, int, int, list[_Cost]]]:
+    def _charged_anew(self, bound: Floats) -> list[_Range]:
         """The whole range, searched with a charge for each step on Q that is left out.
 
         A path that ends before it has gone around saves what the missing steps cost, and its bound
         is worth little. Closed paths all have n such steps, so the charge changes nothing between
         them. It is the mean cost of a step; that of counts is rounded, so that they stay exact.
         """
-        m, n = len(self.p), self.columns.shape[1]
-        is_real = np.array([part[TIE] > 0.0 for part in self.weights])
-        mean = bound.parts / (m + n)
-        rounded = np.where(bound.parts < LARGEST_COUNT, np.round(GRAIN * mean) / GRAIN, 0.0)
+        m, n = self.around.shape
+        is_real = np.array([part[TIE] > 0.0 for part in self.around.weights])
+        mean = bound / (m + n)
+        rounded = np.where(bound < LARGEST_COUNT, np.round(GRAIN * mean) / GRAIN, 0.0)
         self.charge = np.where(is_real, mean, rounded)
-        self.corridor = Corridor(
-            self.p, self.columns, self.weights, self.limits, self.bars, self.charge
-        )
         self.best = None
-        ranges: list[tuple[_Cost, int, int, list[_Cost]]] = []
-        self._search_range(0, n, ranges)
+        ranges: list[_Range] = []
+        stride = stride_of(self.around)
+        onward = self._search_range(0, n, ranges, stride)
+        if not ranges:
+            return []
+        if stride:
+            self.corridor = corridor_of(self.around, onward, self.charge, stride)
+            self._look_for_better()
+        if stride and self.is_same_each_turn:
+            return self._begun_where_narrowest(ranges)
+        self._search_range(ranges[0][2], ranges[0][2] + 1, [])
         return ranges
+
+    def _begun_where_narrowest(self, ranges: list[_Range]) -> list[_Range]:
+        """Ranges of as few starts as there can be, at the sample of P where the ways are fewest.
+
+        The path that costs least of all goes wrong at its ends: what it has in the middle is likely
+        to be on a good closed path, which then tells where there are few ways.
+        """
+        assert self.corridor is not None
+        own = self.seam, self.around, self.corridor
+        self._begin_at(*self.corridor.middle())
+        self._search_range(0, 1, [])
+        self.seam, self.around, self.corridor = own
+        self._look_for_better()
+        if not self.possible.any(axis=1).all():
+            return []
+        i, j, count = self.corridor.narrowest(self.possible)
+        if count >= np.count_nonzero(self.possible[0]):
+            return ranges
+        self._begin_at(i, j)
+        anew: list[_Range] = []
+        self._search_range(0, count, anew)
+        return anew
+
+    def _begin_at(self, i: int, j: int) -> None:
+        """Counts samples from there on."""
+        assert self.corridor is not None
+        m = self.around.shape[0]
+        self.seam = self.seam[0] + i, self.seam[1] + j
+        self.around = self.around.begun_at(i, j)
+        self.corridor = self.corridor.begun_at(m, i, j)
+        self._look_for_better()
+
+    def _look_for_better(self) -> None:
+        if self.corridor is not None:
+            best = None if self.best is None else np.array(self.best[0].parts)
+            self.possible = self.corridor.possible(best)
 
     def _is_open(self, bound: _Cost) -> bool:
         return self.best is None or bound < self.best[0]
 
     def _search_range(
-        self, first: int, stop: int, ranges: list[tuple[_Cost, int, int, list[_Cost]]]
-    ) -> None:
-        """Keeps the best path of a range of starts if it is closed, else the range, to be cut."""
+        self, first: int, stop: int, ranges: list[_Range], stride: int | None = None
+    ) -> Floats:
+        """Keeps the best path of a range of starts if it is closed, else the range, to be cut.
+
+        Returns what the program wrote down, of samples of P so far apart if a stride is given.
+        """
+        around, n = self.around, self.around.shape[1]
         left, width = self._window(first, stop)
         self.programs += 1
         parts, choices, crossings = decide_range(
-            self.p,
-            self.columns,
+            around.p,
+            around.columns,
             (first, stop - first),
-            self.weights,
-            self.limits,
-            self.bars,
+            around.weights,
+            around.limits,
+            around.bars,
             (left, width),
             self.charge,
-            NOTHING if self.corridor is None else self.corridor.wanted,
+            CROSSINGS if stride else NOTHING,
+            (0, stride or 1),
         )
-        if self.corridor is not None:
-            self.corridor.take(crossings)
-        costs = [_Cost(one, self.weights) for one in parts]
-        start = 0
-        for c in range(1, len(costs)):
-            start = c if costs[c] < costs[start] else start
+        costs = [_Cost(one, around.weights) for one in parts.tolist()]
+        start = min(range(len(costs)), key=costs.__getitem__)
         if costs[start].parts[0] >= NEVER:
-            return
+            return crossings
         steps, end = follow_around(choices, left, first + start)
-        end -= first
-        landed = end - self.columns.shape[1]
-        if landed == start:
+        landed = end - first - n
+        if landed != start:
             if self._is_open(costs[start]):
-                self.best = costs[start], first + start, steps
-            return
-        if self.best is None and self.corridor is not None:
-            self._search_range(first + start, first + start + 1, ranges)
-        if self._is_open(costs[start]):
-            cut = first + (start + landed + 1) // 2
-            heapq.heappush(ranges, (costs[start], first, cut, costs))
+                cut = first + (start + landed + 1) // 2
+                heapq.heappush(ranges, (costs[start], first, cut, costs))
+        elif self._is_open(costs[start]):
+            self.best = costs[start], (self.seam[0], self.seam[1] + first + start), steps
+            self._look_for_better()
+        return crossings
 
-    def _window(self, first: int, stop: int) -> tuple[npt.NDArray[np.int64], int]:
+    def _window(self, first: int, stop: int) -> Window:
         """The bridges that a program looks at: all of them until there is a best path."""
-        m, n = len(self.p), self.columns.shape[1]
-        if self.best is None or self.corridor is None or stop - first == n:
+        m, n = self.around.shape
+        if self.corridor is None:
             return whole_window(m, n, first, stop)
-        return self.corridor.window(first, stop, self.best[0].parts)
+        return self.corridor.window(self.possible, m, first, stop)
 
 
 def closed_steps(
@@ -217,22 +267,23 @@ def closed_steps(
     base = pins[0] if pins else (0, 0)
     rolled = [np.roll(rail, -at, axis=0) for rail, at in zip(rails, base, strict=True)]
     around = np.roll(barred.T if is_swapped else barred, (-base[0], -base[1]), (0, 1))
+    weights_and_limits = weights, (planarity, nothing, energy)
     best: _Search | None = None
     programs = 0
     for cover in _covers(around, pins, (len(rails[0]), len(rails[1]))):
-        search = _Search(
-            rolled[0], rolled[1], weights, (planarity, nothing, energy), Bars(cover, least_cosine)
-        )
+        own = Bars(np.ascontiguousarray(cover), least_cosine)
+        strip = Around(rolled[0], np.ascontiguousarray(rolled[1].T), *weights_and_limits, own)
+        search = _Search(strip, is_same_each_turn=not pins)
         search.run()
         programs += search.programs
-        if best is None or search.cost < best.cost:
+        if search.best is not None and (best is None or search.cost < best.cost):
             best = search
     assert best is not None
     start, steps = best.found
-    first = base[0], (base[1] + start) % len(rails[1])
+    first = tuple((a + b) % len(rail) for a, b, rail in zip(base, start, rails, strict=True))
     if is_swapped:
-        return ClosedPath(first[::-1], (1 - steps).astype(np.int8), programs)
-    return ClosedPath(first, steps, programs)
+        return ClosedPath((first[1], first[0]), (1 - steps).astype(np.int8), programs)
+    return ClosedPath((first[0], first[1]), steps, programs)
 
 
 def is_around(pinned: Sequence[tuple[int, int]], m: int, n: int) -> bool:
