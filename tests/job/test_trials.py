@@ -58,6 +58,7 @@ def test_a_stretched_strip_is_tried_with_a_finer_tolerance_and_without_a_price(
         "--tolerance 0.0125",
         "--price none",
         "--criteria bending",
+        "--surface smooth",
     ]
     for trial in strip["trials"]:  # neither can help: there is no developable strip
         assert trial["state"] == "stretched"
@@ -92,7 +93,6 @@ def test_a_missed_limit_says_what_was_tried_on_the_waves(tmp_path: Path) -> None
         "--fade 0.45",
         "--tolerance 0.0125",
         "--price none",
-        "--criteria bending",
     ]
     radius = trials["--height 1"]["inner_bend_radius_mm"]
     # Waves half as high bend half as sharply.
@@ -110,10 +110,10 @@ def test_a_missed_limit_says_what_was_tried_on_the_waves(tmp_path: Path) -> None
 @pytest.mark.parametrize(
     ("options", "changes"),
     [
-        ({"price": None}, ["--tolerance 0.0125", "--criteria bending"]),
+        ({"price": None}, ["--tolerance 0.0125"]),
         ({"search": "local"}, ["--tolerance 0.0125"]),
         ({"criteria": ("bending",)}, ["--tolerance 0.0125"]),
-        ({"tolerance": 0.2}, ["--tolerance 0.05", "--price none", "--criteria bending"]),
+        ({"tolerance": 0.2}, ["--tolerance 0.05", "--price none"]),
     ],
 )
 def test_a_lever_that_would_change_nothing_is_not_tried(
@@ -121,6 +121,16 @@ def test_a_lever_that_would_change_nothing_is_not_tried(
 ) -> None:
     job = Job(input=Path("strip.step"), **options)
     assert [lever.words for lever in levers_of(job, on_upper=False)] == changes
+
+
+def test_where_the_piece_is_not_the_surface_judged_what_cuts_that_is_tried() -> None:
+    job = Job(input=Path("strip.step"))
+    words = [lever.words for lever in levers_of(job, on_upper=False, piece_differs=True)]
+    assert words[2:] == ["--criteria bending", "--surface smooth"]
+    job = Job(input=Path("strip.step"), surface="smooth", criteria=("bending",))
+    assert [lever.words for lever in levers_of(job, on_upper=False, piece_differs=True)] == [
+        "--tolerance 0.0125"
+    ]
 
 
 def test_on_an_upper_the_levers_are_those_of_the_waves() -> None:
@@ -151,7 +161,7 @@ def test_what_a_trial_says_is_what_a_run_with_that_change_gives(tmp_path: Path) 
     for change, setting in (
         ("--height 1", {"height": 1}),
         ("--fade 0.45", {"fade": 0.45}),
-        ("--criteria bending", {"criteria": ("bending",)}),
+        ("--price none", {"price": None}),
     ):
         job = Job(output_dir=tmp_path / "again", no_trials=True, **{**asked, **setting})
         strip = strips_of(job)[0]

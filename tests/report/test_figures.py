@@ -48,7 +48,7 @@ def test_the_validity_figure_shows_matrix_and_path(view: StripView, ax: Axes) ->
     assert image.origin == "lower"
     path = line_labelled(ax, "global, least invalid + bending")
     assert np.array_equal(path, view.triangulation.bridges[:, ::-1])
-    invalid = line_labelled(ax, "not developable")
+    invalid = line_labelled(ax, "not locally convex")
     inflection = line_labelled(ax, "inflection")
     assert len(inflection) == view.triangulation.inflection_count
     assert len(invalid) + len(inflection) == view.triangulation.invalid_count

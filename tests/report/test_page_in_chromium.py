@@ -431,3 +431,21 @@ def test_verdict_picture_and_figures_stand_on_the_first_screen(
     assert max(map(bottom, (headline, *tiles))) <= height
     assert bottom(canvas(browser, "space")) <= height
     assert "band" not in browser.find_element(By.CSS_SELECTOR, ".said").text.split("Bands:")[0]
+
+
+@pytest.mark.parametrize(("name", "state"), [("creased", "creased"), ("stretched", "stretched")])
+def test_the_picture_shows_the_verdict_first(
+    browser: webdriver.Chrome, tmp_path: Path, name: str, state: str
+) -> None:
+    views = FIRST_SCREENS[name]()
+    open_page(browser, tmp_path / "state.html", write_page(summary_of(views), views))
+    chosen = browser.find_element(By.CSS_SELECTOR, "[name=color-by]:checked")
+    assert chosen.get_attribute("value") == "state"
+    states = browser.execute_script("return Report.strips[0].judged")
+    assert state in states
+    if state == "creased":  # at the corner only
+        assert states.count("creased") == 1
+    shown = [key for key in browser.find_elements(By.CSS_SELECTOR, ".legend [data-for]")
+             if key.is_displayed()]  # fmt: skip
+    assert {key.get_attribute("data-for") for key in shown} == {"state"}
+    assert errors(browser) == []

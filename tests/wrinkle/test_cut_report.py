@@ -50,6 +50,14 @@ def test_the_strip_that_bends_least_is_often_the_surface_judged(seed: int) -> No
     assert abs(strip.cut.larger_percent) < 1.0
 
 
+def test_a_smooth_surface_is_the_one_that_is_judged() -> None:
+    assert strip_of(bumps, 2).cut.differs
+    smooth = strip_of(bumps, 2, surface="smooth").cut
+    assert not smooth.differs
+    assert abs(smooth.longer_mm) <= 0.02
+    assert abs(smooth.larger_percent) <= 0.01
+
+
 @pytest.mark.parametrize("seed", [0, 1, 5, 11])
 @pytest.mark.parametrize("surface", ["cones", "facets"])
 def test_where_there_is_one_developable_surface_it_is_the_piece(seed: int, surface: str) -> None:

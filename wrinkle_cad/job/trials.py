@@ -45,19 +45,19 @@ class Lever:
     """The settings that differ."""
 
 
-def levers_of(job: Job, *, on_upper: bool) -> Iterator[Lever]:
+def levers_of(job: Job, *, on_upper: bool, piece_differs: bool = False) -> Iterator[Lever]:
     """Returns the changes that exist for a job: those of the waves first.
 
     Args:
         job: its settings.
         on_upper: whether its strips are stitched into an upper.
+        piece_differs: whether the piece that is cut of a wrinkle is not the surface that is judged.
 
     Example:
         >>> from pathlib import Path
         >>> job = Job(input=Path("shoe.step"), waves=5, height=3, margin=4)
         >>> [lever.words for lever in levers_of(job, on_upper=True)]
-        ['--height 1.5', '--margin 6', '--fade 0.45', '--tolerance 0.0125', '--price none',
-     '--criteria bending']
+        ['--height 1.5', '--margin 6', '--fade 0.45', '--tolerance 0.0125', '--price none']
     """
     if on_upper and job.height is not None:
         yield _lever("height", tuple(LOWER * height for height in job.height))
@@ -70,10 +70,13 @@ def levers_of(job: Job, *, on_upper: bool) -> Iterator[Lever]:
         if job.phase_deg[0] != job.phase_deg[1]:
             yield _lever("phase_deg", (job.phase_deg[0], job.phase_deg[0]))
     yield _lever("tolerance", FINER * job.tolerance)
-    if job.criteria == settings.CRITERIA and job.search == "global":
-        if job.price is not None:
-            yield _lever("price", None)
+    is_default = job.criteria == settings.CRITERIA and job.search == "global"
+    if is_default and job.price is not None:
+        yield _lever("price", None)
+    if piece_differs and is_default:
         yield _lever("criteria", ("bending",))
+    if piece_differs and job.surface == "cones":
+        yield _lever("surface", "smooth")
 
 
 def add_trials(
@@ -95,7 +98,9 @@ def add_trials(
     wanting = {entry["name"]: entry for entry in entries if _wants_help(entry)}
     if not wanting:
         return
-    for lever in levers_of(job, on_upper=chosen.upper is not None):
+    piece_differs = any(map(_piece_differs, entries))
+    on_upper = chosen.upper is not None
+    for lever in levers_of(job, on_upper=on_upper, piece_differs=piece_differs):
         try:
             strips = _strips_of(replace(job, **lever.changes), chosen, upper, set(wanting))
             found = _figures_of(strips, limits)
@@ -122,8 +127,12 @@ def _written(value: Any) -> str:
 
 
 def _wants_help(entry: Mapping[str, Any]) -> bool:
-    is_other = entry["role"] == "strip" and entry["cut"]["differs"]
-    return is_other or entry["state"] != "developable" or entry["passed"] is False
+    fails = entry["state"] != "developable" or entry["passed"] is False
+    return fails or _piece_differs(entry)
+
+
+def _piece_differs(entry: Mapping[str, Any]) -> bool:
+    return bool(entry["role"] == "strip" and entry["cut"]["differs"])
 
 
 def _strips_of(

@@ -146,7 +146,7 @@ def _mark_invalid(
     invalid = ~triangulation.valid
     invalid[[0, -1]] = False
     for at, color, label in (
-        (invalid & ~triangulation.inflection, INVALID_COLOR, "not developable"),
+        (invalid & ~triangulation.inflection, INVALID_COLOR, "not locally convex"),
         (invalid & triangulation.inflection, INFLECTION_COLOR, "inflection"),
     ):
         if at.any():

@@ -13,7 +13,12 @@ from .views import MeshView, StripView
 
 _IDLE: Final = "Point at the strip: the same bridge lights up in every view."
 _STATES: Final = ("developable", "stretched", "creased", "folded")
-_COLORS: Final = (("validity", "Validity"), ("fold", "Fold angle"), ("twist", "Twist"))
+_COLORS: Final = (
+    ("state", "Verdict"),
+    ("validity", "Validity"),
+    ("fold", "Fold angle"),
+    ("twist", "Twist"),
+)
 _PATTERN_LAYERS: Final = (
     ("cut", "Cut line"),
     ("sew", "Sew line"),
@@ -95,7 +100,7 @@ def space_panel(strips: Sequence[StripView], body: MeshView | None) -> Element:
     colors = [
         node(
             "label",
-            node("input", type="radio", name="color-by", value=value, checked=value == "validity"),
+            node("input", type="radio", name="color-by", value=value, checked=value == "state"),
             title,
         )
         for value, title in _COLORS
@@ -135,14 +140,21 @@ def _key(tone: str, title: str, kind: str = "") -> Element:
 
 
 def _space_legend() -> Element:
-    validity = {"data_for": "validity"}
-    keys = [
-        _key("valid", "locally convex bridge"),
-        _key("inflection", "inflection ruling"),
-        _key("invalid", "not locally convex"),
-    ]
-    for key in keys:
-        key.set("data-for", validity["data_for"])
+    keys = []
+    for mode, tone, title in (
+        ("state", "valid", "developable"),
+        ("state", "stretched", "a sheet must give"),
+        ("state", "creased", "creased"),
+        ("state", "folded", "folded back"),
+        ("validity", "valid", "locally convex bridge"),
+        ("validity", "inflection", "inflection ruling"),
+        ("validity", "invalid", "not locally convex"),
+    ):
+        key = _key(tone, title)
+        key.set("data-for", mode)
+        if mode != "state":
+            key.set("hidden", "")
+        keys.append(key)
     measure = node(
         "span",
         node("span", class_="what"),

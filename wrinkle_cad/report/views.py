@@ -7,6 +7,7 @@ the middle of everything, so that a model far from the origin loses nothing.
 from __future__ import annotations
 
 import base64
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any, Final, Literal
@@ -14,6 +15,7 @@ from typing import Any, Final, Literal
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from wrinkle_cad import settings
 from wrinkle_cad.errors import InputError
 from wrinkle_cad.pattern.piece.piece import PatternPiece
 from wrinkle_cad.strip.flat.unrolling import Unrolling
@@ -72,6 +74,9 @@ def scene_payload(strips: Sequence[StripView], body: MeshView | None) -> dict[st
     center = _center(strips, body)
     return {
         "center": center.tolist(),
+        "stretch_percent": settings.STRETCH_PERCENT,
+        "crease_deg": settings.CREASE_DEG,
+        "fold_back": 2.0 * math.atan(settings.STEEPEST_HALF_FOLD),
         "strips": [_strip_payload(view, center) for view in strips],
         "body": None if body is None else _mesh_payload(body, center),
     }

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 DIFFERS_PERCENT: Final = 1.0
 """The piece that is cut is another surface than the verdict's if its area differs by more, or if
 along a ruling it is longer by more ..."""
-DIFFERS_TOLERANCES: Final = 2.0
+DIFFERS_TOLERANCES: Final = 4.0
 """... and by more than so many tolerances: on 12 strips whose piece is the verdict's surface, the
 two lengths differed by a third of the tolerance at most."""
 
@@ -99,11 +99,14 @@ def cut_findings(
     severity: Severity = "info" if is_band else "warning"
     largest_fold = float(np.abs(triangulation.fold).max(initial=0.0))
     message = (
-        f"The piece of {name} is not the surface that the verdict is about: {cut_words(cut)}. That"
-        " surface asks least of a sheet, the piece is the strip that was found, which folds by up"
-        f" to {math.degrees(largest_fold):.1f} degrees at a bridge. Cut a sample first, or find"
-        " the strip that bends least (--criteria bending), which is often that surface."
+        f"The piece of {name} is not the surface that the verdict is about: {cut_words(cut)}. It"
+        f" folds by up to {math.degrees(largest_fold):.1f} degrees at a bridge."
     )
+    if not is_band:
+        message += (
+            " Cut a sample first, or cut that surface itself (--surface smooth, where it has few"
+            " pieces), or the strip that bends least (--criteria bending), which is often near it."
+        )
     return (Finding("cut-differs", severity, message),)
 
 

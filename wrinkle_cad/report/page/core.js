@@ -66,6 +66,22 @@ const Report = (() => {
     if (strip.chosen.valid[k]) return "valid";
     return strip.inflection[k] ? "inflection" : "invalid";
   }
+  /* What a sheet must do at each bridge: "developable", "stretched" in a gap that strains it, "creased", "folded". */
+  function judged(strip, entry) {
+    const states = new Array(strip.chosen.count).fill("developable"), place = (k) => strip.pArc[strip.chosen.p[k]] + strip.qArc[strip.chosen.q[k]];
+    for (const gap of entry.gaps || []) {
+      if (gap.max_strain_percent > scene.stretch_percent) for (let k = gap.first_bridge; k <= gap.last_bridge; k += 1) states[k] = "stretched";
+    }
+    for (const crease of entry.creases || []) {
+      if (crease.angle_deg < scene.crease_deg) continue;
+      let best = 0;
+      for (let k = 0; k < states.length; k += 1) if (Math.abs(place(k) - crease.p_mm - crease.q_mm) < Math.abs(place(best) - crease.p_mm - crease.q_mm)) best = k;
+      states[best] = "creased";
+    }
+    for (let k = 1; k < states.length - 1; k += 1) if (Math.abs(strip.chosen.fold[k - 1]) > scene.fold_back) states[k] = "folded";
+    return states;
+  }
+  strips.forEach((strip, at) => { strip.judged = judged(strip, summary.strips[at]); });
   const foldAt = (path, k) => (k > 0 && k < path.count - 1 ? path.fold[k - 1] : 0);
   const degrees = (angle) => (angle * 180) / Math.PI;
 

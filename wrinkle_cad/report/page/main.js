@@ -25,6 +25,7 @@
     if (strip.pieces.length) Report.pattern(strip, section.querySelector("canvas.pattern"), layersOf(section));
   });
 
+  const SHEET = { stretched: "a sheet must give here", creased: "a sheet is creased here", folded: "folded back" };
   const STATES = { valid: "locally convex", inflection: "inflection", invalid: "not locally convex" };
   function words({ strip, bridge }) {
     const { p, q, at, count, valid } = strip.chosen;
@@ -34,6 +35,7 @@
       `${at[bridge].toFixed(1)} mm along`,
       ends ? "an end" : STATES[valid[bridge] ? "valid" : Report.stateOf(strip, bridge)],
     ];
+    if (SHEET[strip.judged[bridge]]) parts.push(SHEET[strip.judged[bridge]]);
     if (!ends) parts.push(`fold ${Report.degrees(Report.foldAt(strip.chosen, bridge)).toFixed(2)}°`);
     parts.push(`twist ${Report.degrees(strip.twist[bridge]).toFixed(2)}°`);
     return parts.join(" · ");

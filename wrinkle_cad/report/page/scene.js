@@ -12,7 +12,7 @@ Report.space = (THREE, canvas, panel) => {
   world.add(sky, camera);
   camera.add(sun);
   sun.position.set(0.5, 0.9, 1);
-  let waiting = false, colorBy = "validity", solid = null;
+  let waiting = false, colorBy = "state", solid = null;
   const marker = new THREE.Mesh(new THREE.CylinderGeometry(1, 1, 1, 12), new THREE.MeshBasicMaterial());
   marker.visible = false;
   marker.renderOrder = 2;
@@ -88,17 +88,20 @@ Report.space = (THREE, canvas, panel) => {
     return high;
   }
   function paint() {
-    const themed = Object.fromEntries(["valid", "inflection", "invalid", "strip", "band", "ink", "body"].map((name) => [name, new THREE.Color(color(name))]));
-    const high = colorBy === "validity" ? 0 : highest();
+    const themed = Object.fromEntries(["valid", "inflection", "invalid", "stretched", "creased", "folded", "strip", "band", "ink", "body"].map((name) => [name, new THREE.Color(color(name))]));
+    const isMeasure = colorBy === "fold" || colorBy === "twist", high = isMeasure ? highest() : 0;
+    const plain = (strip) => themed[strip.role === "band" ? "band" : "strip"];
     const shade = (value) => ramp(high ? Math.sqrt(value / high) : 0);
     const lineColor = (strip, k) => {
-      if (colorBy !== "validity") return shade(around(strip, k));
+      if (isMeasure) return shade(around(strip, k));
+      if (colorBy === "state") return strip.judged[k] === "developable" ? themed.valid : themed[strip.judged[k]];
       return themed[stateOf(strip, k)];
     };
     const faceColor = (strip, k) => {
-      if (colorBy !== "validity") return shade(around(strip, k));
+      if (isMeasure) return shade(around(strip, k));
+      if (colorBy === "state") return strip.judged[k] === "developable" ? plain(strip) : themed[strip.judged[k]];
       const state = k === 0 || k === strip.chosen.count - 1 ? "valid" : stateOf(strip, k);
-      return state === "valid" ? themed[strip.role === "band" ? "band" : "strip"] : themed[state];
+      return state === "valid" ? plain(strip) : themed[state];
     };
     for (const item of items) {
       const { strip } = item, faces = item.mesh.geometry.attributes.color, lines = item.bridges.geometry.attributes.color;
@@ -125,7 +128,7 @@ Report.space = (THREE, canvas, panel) => {
   }
   function legend(high) {
     const box = panel.querySelector(".legend");
-    box.querySelectorAll("[data-for]").forEach((part) => { part.hidden = part.dataset.for !== (colorBy === "validity" ? "validity" : "measure"); });
+    box.querySelectorAll("[data-for]").forEach((part) => { part.hidden = part.dataset.for !== (colorBy === "fold" || colorBy === "twist" ? "measure" : colorBy); });
     box.querySelector(".high").textContent = high.toFixed(high < 1 ? 3 : 1) + "°";
     box.querySelector(".quarter").textContent = (high / 4).toFixed(high < 4 ? 3 : 1) + "°";
     box.querySelector(".what").textContent = colorBy === "twist" ? "Twist along a bridge" : "Fold at a bridge";
