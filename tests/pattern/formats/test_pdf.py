@@ -121,6 +121,19 @@ def test_cut_sew_and_fold_lines_have_pens_of_their_own():
     assert re.search(r"\b1\.2 w\b", page)
 
 
+def test_bends_have_a_pen_for_each_way_and_stand_for_the_rulings():
+    wavy = strips.random_strip(2)
+    folds = make_pieces(*wavy, name="part", settings=PieceSettings(rulings=True))
+    assert {fold > 0.0 for piece in folds for fold in piece.ruling_fold} == {True, False}
+    bends = make_pieces(*wavy, name="part", settings=PieceSettings(rulings=True, bend_table=True))
+    patterns = []
+    for pieces in (folds, bends):
+        page = streams(pdf_file(pieces).content)[-1]
+        patterns.append(set(re.findall(r"(\[[^\]]+\])\s[-\d.]+ d", page)))
+    assert len(patterns[0]) == len(patterns[1]) == 2
+    assert not patterns[0] & patterns[1]
+
+
 def test_empty_pages_are_left_out():
     # A sickle: the box of its outline has corners without anything on them.
     angle = np.linspace(0.0, np.pi, 200)

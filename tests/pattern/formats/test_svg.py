@@ -10,6 +10,7 @@ from tests.pattern.group_codes import area_of
 from tests.pattern.strips import make_pieces
 from wrinkle_cad.errors import ExportError, InputError
 from wrinkle_cad.pattern.formats.svg import svg_bytes, write_svg
+from wrinkle_cad.pattern.piece.options import PieceSettings
 from wrinkle_cad.pattern.piece.stacking import laid_out
 
 from .test_dxf import FULL
@@ -43,6 +44,22 @@ def test_the_cut_line_has_its_size_and_is_not_mirrored():
     shift = drawn[0] - piece.cut_line[0]
     assert np.allclose(drawn - shift, piece.cut_line, atol=1e-5)
     assert area_of([tuple(point) for point in drawn]) > 0.0
+
+
+@pytest.mark.parametrize("profile", ["cutter", "aama", "astm"])
+def test_cut_sew_and_fold_lines_are_told_apart_without_color(profile):
+    layers = {"cutter": ("CUT", "SEW", "RULING")}.get(profile, ("1", "14", "8"))
+    wanted = PieceSettings(seam_allowance=(6.0,) * 4, rulings=True)
+    pieces = make_pieces(*strips.random_strip(2), name="part", settings=wanted)
+    _, groups = read(svg_bytes(pieces, profile=profile))
+    cut, sew, folds = (
+        {line.get("stroke-dasharray") for line in groups[f"layer-{layer}"]} - {None}
+        for layer in layers
+    )
+    assert not cut
+    assert len(sew) == 1
+    assert len(folds) == 2
+    assert not sew & folds
 
 
 def test_everything_lies_on_the_sheet():

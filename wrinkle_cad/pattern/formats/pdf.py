@@ -3,17 +3,17 @@
 Where there are several pages, the first is a picture of all others with their numbers. A piece that
 fits on one sheet is not cut by an edge of paper; a larger one has pages in rows and columns that
 share 10 mm, with crosses where they meet. Lines are told apart in black and white: cut lines are
-thick, sew lines dashed, folds dash-dotted (mountain) and dotted (valley). Every page has a bar of
-50 mm to check that the printer did not scale.
+thick, sew lines dashed, folds dash-dotted (mountain) and dotted (valley), bends of a bend table
+with one more dot (up) or dash (down). Every page has a bar of 50 mm to check that the printer did
+not scale.
 """
 
 from __future__ import annotations
 
 import io
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from types import MappingProxyType
 from typing import Any, Final
 
 import numpy as np
@@ -23,9 +23,10 @@ from wrinkle_cad.errors import Finding, InputError
 from wrinkle_cad.files.atomic import write_export
 from wrinkle_cad.pattern.piece.piece import Floats, PatternPiece
 
-from .drawing import Drawing, draw
-from .layers import Profile, Role, profile_from
+from .drawing import Drawing, Stroke, draw
+from .layers import Profile, profile_from
 from .paper import LONG, MARGIN, OVERLAP, SHORT, Group, on_paper
+from .pens import PENS, Pen, pen_of
 from .plain_text import ascii_text, text_changed
 from .svg import color_of
 
@@ -33,18 +34,8 @@ _BAR: Final = 50.0
 _OVERVIEW_GAP: Final = 4.0
 _INCH: Final = 25.4
 _POINTS_PER_MM: Final = 72.0 / _INCH
-_PENS: Final[Mapping[Role, tuple[float, tuple[float, ...], str]]] = MappingProxyType(
-    {
-        "cut": (1.2, (), "cut"),
-        "sew": (0.5, (3.0, 1.5), "sew"),
-        "mountain": (0.5, (5.0, 1.5, 0.5, 1.5), "fold, mountain"),
-        "valley": (0.5, (0.5, 1.5), "fold, valley"),
-        "notch": (0.8, (), "notch"),
-        "grain": (0.5, (), "grain"),
-    }
-)
-"""Role: line width in points, dashes and gaps in mm, and its name in the legend."""
-_PLAIN_PEN: Final = (0.5, ())
+_BENDS: Final = ("bend_up", "bend_down")
+_FOLDS: Final = ("mountain", "valley")
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -82,18 +73,17 @@ def pdf_file(
     own_pages = sum(len(group.pages) for group in groups)
     has_overview = own_pages > 1
     page_count = own_pages + has_overview
-    changed: list[Finding] = []
+    drawn = [[draw(piece) for piece in group.pieces] for group in groups]
     stream = io.BytesIO()
     with PdfPages(stream, metadata={"CreationDate": None, "Producer": None}) as book:
         if has_overview:
             first = Figure(figsize=(SHORT / _INCH, LONG / _INCH))
-            _draw_overview(first, groups, chosen)
+            _draw_overview(first, groups)
+            _draw_legend(first.axes[0], [item for items in drawn for item in items], chosen)
             _draw_foot(first, np.array((SHORT, LONG)), f"page 1 of {page_count}: all pages")
             book.savefig(first)
         number = int(has_overview)
-        for group in groups:
-            drawings = [draw(piece) for piece in group.pieces]
-            changed += _changed(drawings)
+        for group, drawings in zip(groups, drawn, strict=True):
             for column, row in group.pages:
                 number += 1
                 figure = Figure(figsize=tuple(group.page / _INCH))
@@ -102,6 +92,7 @@ def pdf_file(
                 told = f"page {number} of {page_count}" + (f", {place}" if place else "")
                 _draw_foot(figure, group.page, told)
                 book.savefig(figure)
+    changed = [finding for drawings in drawn for finding in _changed(drawings)]
     return PdfFile(stream.getvalue(), page_count, tuple(changed))
 
 
@@ -158,28 +149,29 @@ def _draw_page(
 
 
 def _draw_lines(axes: Any, drawing: Drawing, profile: Profile) -> None:
-    for stroke in drawing.strokes:
-        style = profile.styles.get(stroke.role)
-        if style is None:
-            continue
+    for stroke in _shown(drawing, profile):
+        style = profile.styles[stroke.role]
         closing = stroke.points[:1] if stroke.is_closed else stroke.points[:0]
         points = np.vstack((stroke.points, closing))
-        width, dashes = _PENS.get(stroke.role, _PLAIN_PEN)[:2]
-        axes.plot(
-            *points.T,
-            color=color_of(style),
-            linewidth=width,
-            linestyle=_pattern(width, dashes),
-        )
+        pen = pen_of(stroke.role)
+        axes.plot(*points.T, color=color_of(style), linewidth=pen.width, linestyle=_pattern(pen))
     for spot in drawing.spots:
-        style = profile.styles.get(spot.role)
-        if style is not None:
-            axes.plot(*spot.position, marker="o", markersize=3, mfc="none", color=color_of(style))
+        if spot.role in profile.styles:
+            color = color_of(profile.styles[spot.role])
+            axes.plot(*spot.position, marker="o", markersize=3, mfc="none", color=color)
 
 
-def _pattern(width: float, dashes: tuple[float, ...]) -> Any:
+def _shown(drawing: Drawing, profile: Profile) -> list[Stroke]:
+    """Returns the strokes that the profile shows; on paper bends stand for the rulings."""
+    strokes = [stroke for stroke in drawing.strokes if stroke.role in profile.styles]
+    if any(stroke.role in _BENDS for stroke in strokes):
+        return [stroke for stroke in strokes if stroke.role not in _FOLDS]
+    return strokes
+
+
+def _pattern(pen: Pen) -> Any:
     """Returns dashes in mm as matplotlib has them, which counts in line widths."""
-    return (0, [dash * _POINTS_PER_MM / width for dash in dashes]) if dashes else "-"
+    return (0, [dash * _POINTS_PER_MM / pen.width for dash in pen.dashes]) if pen.dashes else "-"
 
 
 def _draw_labels(axes: Any, drawing: Drawing, profile: Profile, low: Floats, high: Floats) -> None:
@@ -199,13 +191,11 @@ def _draw_labels(axes: Any, drawing: Drawing, profile: Profile, low: Floats, hig
             )
 
 
-def _draw_overview(figure: Any, groups: Sequence[Group], profile: Profile) -> None:
-    """Draws all pages small, with their numbers, and what the lines mean."""
+def _draw_overview(figure: Any, groups: Sequence[Group]) -> None:
+    """Draws all pages small, with their numbers."""
     axes = figure.add_axes((0.0, 0.0, 1.0, 1.0), xlim=(0.0, SHORT), ylim=(0.0, LONG))
     axes.set_axis_off()
-    top = LONG - MARGIN
-    axes.text(MARGIN, top - 4.0, "HOW THE PAGES GO TOGETHER", fontsize=11)
-    _draw_legend(axes, profile, top - 12.0)
+    axes.text(MARGIN, LONG - MARGIN - 4.0, "HOW THE PAGES GO TOGETHER", fontsize=11)
     room = np.array((SHORT - 2.0 * MARGIN, LONG - 2.0 * MARGIN - 50.0))
     places, scale = _overview_places(groups, room)
     number = 1
@@ -252,18 +242,21 @@ def _overview_places(groups: Sequence[Group], room: Floats) -> tuple[list[Floats
         scale *= 0.9
 
 
-def _draw_legend(axes: Any, profile: Profile, top: float) -> None:
-    named = [(role, pen) for role, pen in _PENS.items() if role in profile.styles]
-    for i, (role, (width, dashes, name)) in enumerate(named):
+def _draw_legend(axes: Any, drawings: Sequence[Drawing], profile: Profile) -> None:
+    """Draws what each kind of line that stands on a page means."""
+    top = LONG - MARGIN - 12.0
+    drawn = {stroke.role for drawing in drawings for stroke in _shown(drawing, profile)}
+    named = [(role, pen) for role, pen in PENS.items() if role in drawn and role in profile.styles]
+    for i, (role, pen) in enumerate(named):
         x, y = MARGIN + 62.0 * (i % 3), top - 6.0 * (i // 3)
         axes.plot(
             (x, x + 20.0),
             (y, y),
             color=color_of(profile.styles[role]),
-            linewidth=width,
-            linestyle=_pattern(width, dashes),
+            linewidth=pen.width,
+            linestyle=_pattern(pen),
         )
-        axes.text(x + 22.0, y - 1.0, name, fontsize=8)
+        axes.text(x + 22.0, y - 1.0, pen.name, fontsize=8)
 
 
 def _draw_foot(figure: Any, page: Floats, place: str) -> None:

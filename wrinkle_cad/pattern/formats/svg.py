@@ -23,6 +23,7 @@ from wrinkle_cad.pattern.piece.stacking import laid_out
 
 from .drawing import Label, Spot, Stroke, draw, text_box
 from .layers import LINE_TYPES, LayerStyle, Profile, profile_from
+from .pens import pen_of
 from .plain_text import text_changed
 
 _MARGIN: Final = 10.0
@@ -128,7 +129,7 @@ def _element(item: Stroke | Spot | Label, style: LayerStyle, left: float, top: f
     if isinstance(item, Spot):
         x, y = item.position[0] - left, top - item.position[1]
         return f'<circle cx="{_number(x)}" cy="{_number(y)}" r="0.5" {pen}/>'
-    dashes = LINE_TYPES[style.line_type][1][1:]
+    dashes = LINE_TYPES[style.line_type][1][1:] or pen_of(item.role).dashes
     if dashes:
         pattern = " ".join(_number(abs(dash) or _LINE_WIDTH) for dash in dashes)
         pen += f' stroke-dasharray="{pattern}"'
