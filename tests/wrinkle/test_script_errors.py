@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import json
 import re
 from collections.abc import Callable
 from pathlib import Path
+from xml.etree import ElementTree
 
 import pytest
 from build123d import Edge, Face
@@ -12,7 +14,7 @@ from build123d import Edge, Face
 import wrinkle_cad
 from wrinkle_cad import Job, WrinkleStrip, carve, stitch, wrinkle_profiles
 from wrinkle_cad.cad.upper.opening import Opening
-from wrinkle_cad.errors import InputError
+from wrinkle_cad.errors import ExportError, InputError
 
 UPPER = Face.make_rect(100, 60)
 P, Q = Edge.make_line((-40, -8), (40, -8)), Edge.make_line((-40, 8), (40, 8))
@@ -135,3 +137,31 @@ def test_a_notebook_shows_the_drawing_of_a_pattern(strip: WrinkleStrip) -> None:
     assert shown.startswith("<div>")
     assert shown.count("<svg ") == shown.count("</svg>") == 1
     assert "<?xml" not in shown
+
+
+def test_a_notebook_shows_figures_and_a_drawing_of_strips_and_uppers(opening: Opening) -> None:
+    wrinkle = WrinkleStrip(*wrinkle_profiles(opening, waves=3, height=2), name="toe <1> & co")
+    stitched = stitch(opening, wrinkle)
+    for shown in (wrinkle._repr_html_(), stitched._repr_html_()):
+        root = ElementTree.fromstring(shown)
+        assert [part.tag.rpartition("}")[2] for part in root] == ["table", "svg"]
+        assert len(shown) < 60_000
+    cells = [cell.text for cell in ElementTree.fromstring(stitched._repr_html_()).iter("td")]
+    assert cells[cells.index("area") + 1] == f"{stitched.report.area_mm2:.2f} mm2"
+    told = [cell.text for cell in ElementTree.fromstring(wrinkle._repr_html_()).iter("td")]
+    assert told[told.index("largest fold") + 1] == f"{wrinkle.report.max_fold_deg:.2f} degrees"
+
+
+def test_the_page_of_a_script_is_that_of_a_run(strip: WrinkleStrip, tmp_path: Path) -> None:
+    page = tmp_path / "strip.html"
+    strip.export_html(page, pattern=strip.pattern(seam_allowance=6), max_strain_percent=2)
+    root = page.read_text()
+    (summary,) = re.findall(r'<script type="application/json" id="summary">(.*?)</script>', root)
+    told = json.loads(summary)
+    assert told["verdict"]["passed"] is True
+    assert told["strips"][0]["area_3d_mm2"] == pytest.approx(1280.0)
+    assert told["settings"]["max_strain_percent"] == 2
+    with pytest.raises(InputError, match="'max_strain': did you mean max_strain_percent"):
+        strip.export_html(page, max_strain=2)
+    with pytest.raises(ExportError, match="Cannot write HTML"):
+        strip.export_html(tmp_path / "none" / "strip.html")

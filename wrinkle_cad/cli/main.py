@@ -170,7 +170,7 @@ def _add_debug(parser: argparse.ArgumentParser) -> None:
 
 class _Version(argparse.Action):
     def __call__(self, parser: argparse.ArgumentParser, *_: object) -> None:
-        from wrinkle_cad.job.versions import installed_versions
+        from wrinkle_cad.report.versions import installed_versions
 
         for name, version in installed_versions().items():
             print(f"{name} {version}")

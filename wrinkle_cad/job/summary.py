@@ -10,16 +10,15 @@ from typing import TYPE_CHECKING, Any
 
 from wrinkle_cad.errors import Finding
 from wrinkle_cad.files.json_values import finite
+from wrinkle_cad.report.versions import installed_versions
 
 from .job import Job
 from .outputs import SCHEMA, SCHEMA_VERSION
-from .versions import installed_versions
 
 if TYPE_CHECKING:
     from wrinkle_cad.cad.exchange.choose import Chosen
     from wrinkle_cad.cad.exchange.shapes import CadFile
     from wrinkle_cad.report.limits import Limits
-    from wrinkle_cad.wrinkle.strip_report import StripReport
 
 
 def summary_of(
@@ -58,21 +57,6 @@ def summary_of(
         "verdict": verdict.as_json(),
         "findings": [asdict(finding) for finding in findings],
     }
-
-
-def entries_of(reports: Sequence[StripReport], limits: Limits) -> list[dict[str, Any]]:
-    """Returns the entries of ``strips``, judged, before anything was tried.
-
-    Args:
-        reports: one per strip.
-        limits: what the strips are judged by.
-    """
-    from wrinkle_cad.report.verdict import judge
-
-    entries: list[dict[str, Any]] = [{**report.as_json(), "trials": []} for report in reports]
-    for entry, said in zip(entries, judge(entries, limits).strips, strict=True):
-        entry["passed"] = said.passed
-    return entries
 
 
 def settings_as_json(job: Job) -> dict[str, Any]:

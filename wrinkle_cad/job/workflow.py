@@ -15,7 +15,7 @@ from .job import Job
 from .outcome import JobDone, JobFailed, Progress
 from .outputs import check_outputs_are_ours, hashes_of, output_paths, outputs_together
 from .phases import PhaseClock
-from .summary import entries_of, summary_of, to_json
+from .summary import summary_of, to_json
 
 if TYPE_CHECKING:
     from wrinkle_cad.cad.exchange.choose import Chosen
@@ -74,6 +74,8 @@ def _one_line_of(error: Exception, job: Job) -> str:
 
 
 def _run(job: Job, clock: PhaseClock) -> JobDone:
+    from wrinkle_cad.report.verdict import entries_of
+
     from .trials import add_trials
 
     with clock.phase("read"):

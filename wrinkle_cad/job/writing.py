@@ -28,8 +28,6 @@ _VIEW_SAG: Final = 0.1
 """mm; how far the triangles of the page's body may lie from its faces."""
 _VIEW_ANGLE: Final = 0.35
 """rad; how far the normals of its neighbouring triangles may differ."""
-_MATRIX_BRIDGES: Final = 50_000_000
-"""The page shows no validity matrix of more possible bridges: they alone would take 50 MB."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -98,27 +96,12 @@ def write_flat(job: Job, made: Made, paths: Mapping[str, Path]) -> list[dict[str
 def written_page(made: Made, summary: Mapping[str, Any]) -> str:
     """The job's page."""
     from wrinkle_cad.report.page import write_page
-    from wrinkle_cad.report.views import StripView
+    from wrinkle_cad.report.strip_page import strip_view
 
     views = [
-        StripView(
-            name=strip.name,
-            triangulation=strip.triangulation,
-            unrolling=strip.unrolling,
-            pieces=made.pattern.pieces_of(index),
-            valid=strip.valid if _is_drawable(strip) else None,
-            local=strip.local,
-            least_bending=strip.least_bending,
-            role=strip.role,
-        )
-        for index, strip in enumerate(made.strips)
+        strip_view(strip, made.pattern.pieces_of(index)) for index, strip in enumerate(made.strips)
     ]
     return write_page(summary, views, _body_view(made))
-
-
-def _is_drawable(strip: TriangulatedStrip) -> bool:
-    m, n = len(strip.triangulation.p), len(strip.triangulation.q)
-    return m * n <= _MATRIX_BRIDGES
 
 
 def timestamp_of(job: Job) -> datetime.datetime:

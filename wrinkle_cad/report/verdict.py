@@ -12,7 +12,7 @@ from dataclasses import asdict, dataclass
 from typing import Any, Final
 
 from wrinkle_cad import settings
-from wrinkle_cad.wrinkle.strip_report import State
+from wrinkle_cad.wrinkle.strip_report import State, StripReport
 
 from .judging import figure, largest_crease, missed_limits
 from .limits import Limits
@@ -79,6 +79,19 @@ class Verdict:
     def as_json(self) -> dict[str, Any]:
         """The verdict as plain values, as it stands in NAME.json."""
         return asdict(self)
+
+
+def entries_of(reports: Sequence[StripReport], limits: Limits) -> list[dict[str, Any]]:
+    """Returns the entries of ``strips``, judged, before anything was tried.
+
+    Args:
+        reports: one per strip.
+        limits: what the strips are judged by.
+    """
+    entries: list[dict[str, Any]] = [{**report.as_json(), "trials": []} for report in reports]
+    for entry, said in zip(entries, judge(entries, limits).strips, strict=True):
+        entry["passed"] = said.passed
+    return entries
 
 
 def judge(entries: Sequence[Mapping[str, Any]], limits: Limits) -> Verdict:

@@ -61,10 +61,10 @@ class Pattern:
 
     def _repr_html_(self) -> str:
         """What a notebook shows: the drawing of all pieces."""
-        from wrinkle_cad.pattern.formats.svg import svg_bytes
+        from wrinkle_cad.pattern.formats.notebook import figures_with_drawing
+        from wrinkle_cad.pattern.formats.svg import drawing_of
 
-        _, _, drawing = svg_bytes(self.pieces).decode("utf-8").partition("?>")
-        return f"<div>{drawing}</div>"
+        return figures_with_drawing("", {}, drawing_of(self.pieces))
 
     def pieces_of(self, strip_index: int) -> tuple[PatternPiece, ...]:
         """The pieces of one strip, by its index."""

@@ -69,8 +69,7 @@ class TriangulatedStrip:
         color: of the surface, (red, green, blue) from 0 to 1.
         surface: ``cones``, ``smooth`` or ``facets``.
         role: ``strip``, or ``band`` between a strip and the body.
-        stock: thickness, K-factor and grain of the material, and the side of it that the surface
-            is.
+        stock: thickness, K-factor and grain of the material, and which side of it the surface is.
         findings: what was noticed while it was made.
     """
 

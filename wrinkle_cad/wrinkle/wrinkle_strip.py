@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from typing import Any
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 from wrinkle_cad.cad.rail.directrix import check_distinct, make_directrix, orient_alike
 from wrinkle_cad.errors import Finding
@@ -13,8 +14,12 @@ from wrinkle_cad.options.signature import takes_options_of
 from .found_strip import found_between
 from .grain import Stock
 from .options import StripArguments
+from .size_findings import size_findings
 from .strip_findings import unused_findings
 from .triangulated_strip import TriangulatedStrip
+
+if TYPE_CHECKING:
+    from .cut_pattern import Pattern
 
 
 class WrinkleStrip(TriangulatedStrip):
@@ -74,8 +79,33 @@ class WrinkleStrip(TriangulatedStrip):
                 *given_q.findings,
                 *(_orientation_findings(chosen.name) if was_turned else ()),
                 *unused_findings(chosen.name, found.triangulation.unused),
+                *size_findings(chosen.name, found.triangulation, chosen.tolerance),
             ),
         )
+
+    def export_html(
+        self, path: str | Path, *, pattern: Pattern | None = None, **judging: Any
+    ) -> None:
+        """Writes the page of the strip: verdict, figures, 3-D view, pattern, tables.
+
+        Args:
+            path: the file; replaced as a whole.
+            pattern: whose pieces are shown; ``pattern()`` when None.
+            judging: a ``material``, by name or as a file, and limits by their names in a job.
+
+        Raises:
+            InputError: a limit is unknown or out of its range.
+            ExportError: the file could not be written; what stood there before is untouched.
+        """
+        from wrinkle_cad.report.strip_page import write_strip_page
+
+        write_strip_page(Path(path), self, pattern or self.pattern(), judging)
+
+    def _repr_html_(self) -> str:
+        """What a notebook shows: figures and the flat pattern."""
+        from wrinkle_cad.report.strip_page import strip_in_notebook
+
+        return strip_in_notebook(self)
 
 
 def _orientation_findings(name: str) -> tuple[Finding, ...]:

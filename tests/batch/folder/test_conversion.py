@@ -57,7 +57,7 @@ def test_other_versions_make_everything_again(
 
 
 def conversion_versions() -> dict[str, str]:
-    from wrinkle_cad.job.versions import installed_versions
+    from wrinkle_cad.report.versions import installed_versions
 
     return installed_versions()
 

@@ -18,7 +18,7 @@ from wrinkle_cad.files.regular import hash_regular, read_regular
 from wrinkle_cad.files.staging import discard_staging, open_staging
 from wrinkle_cad.job.job import Job
 from wrinkle_cad.job.outcome import JobDone, JobFailed
-from wrinkle_cad.job.versions import installed_versions
+from wrinkle_cad.report.versions import installed_versions
 
 from .delivery import deliver, failed_record
 from .disk_space import check_disk_space

@@ -7,7 +7,7 @@ from pathlib import Path
 
 from wrinkle_cad.errors import InputError
 from wrinkle_cad.files.names import printable
-from wrinkle_cad.job.versions import installed_versions
+from wrinkle_cad.report.versions import installed_versions
 
 from .conversion import base_record, trouble_of
 from .manifest import MANIFEST_NAME, Manifest

@@ -13,7 +13,7 @@ from wrinkle_cad.errors import JobError
 from wrinkle_cad.files.regular import hash_regular
 from wrinkle_cad.job.job import Job
 from wrinkle_cad.job.outcome import JobDone, JobFailed, Progress
-from wrinkle_cad.job.versions import installed_versions
+from wrinkle_cad.report.versions import installed_versions
 
 JobFunction = Callable[..., JobDone | JobFailed]
 """Called as ``job_function(job, progress=...)``; found by its name in a worker."""

@@ -24,6 +24,7 @@ from wrinkle_cad.strip.portable import norm
 from .bands import Band, StripLike, band_name, check_beside, make_band
 from .border_check import compared_border
 from .carve import carve_shapes
+from .drawing import upper_drawing
 from .end_fans import end_fan
 from .opening import Opening, one_per_body
 from .seam_angle import SeamAngle, seam_angles
@@ -99,6 +100,20 @@ class Stitched:
     def __repr__(self) -> str:
         report = self.report
         return f"Stitched({report.face_count} faces, {report.free_edges_after} free edges)"
+
+    def _repr_html_(self) -> str:
+        """What a notebook shows: figures and a drawing of all edges."""
+        from wrinkle_cad.pattern.formats.notebook import figures_with_drawing
+
+        report = self.report
+        figures = {
+            "faces": f"{report.face_count}",
+            "free edges before and after": f"{report.free_edges_before}, {report.free_edges_after}",
+            "area": f"{report.area_mm2:.2f} mm2",
+            "area balance": f"{report.area_balance_mm2:.2g} mm2",
+            "largest edge tolerance": f"{report.max_edge_tolerance_mm:.2g} mm",
+        }
+        return figures_with_drawing("stitched upper", figures, upper_drawing(self.parts, BODY))
 
     @property
     def shell(self) -> Shell:

@@ -65,6 +65,15 @@ def svg_bytes(
     return (head + "\n".join(body) + "\n</svg>\n").encode("utf-8")
 
 
+def drawing_of(pieces: Sequence[PatternPiece]) -> str:
+    """Returns all pieces as an ``<svg>`` element to stand inside HTML.
+
+    Args:
+        pieces: at least one.
+    """
+    return svg_bytes(pieces).decode("utf-8").partition("?>")[2]
+
+
 def write_svg(
     path: Path,
     pieces: Sequence[PatternPiece],
