@@ -1,11 +1,13 @@
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 import pytest
 
 from tests.strip import exact_strips
 from tests.strip.exact_strips import stack
-from wrinkle_cad.strip import Triangulation, triangulate
+from wrinkle_cad.strip import Triangulation, sample_curve, triangulate
 from wrinkle_cad.strip.inflection import plane_misfit
 from wrinkle_cad.strip.rails import coarser_sagitta
 from wrinkle_cad.strip.triangulation import measured
@@ -180,3 +182,23 @@ def test_the_plane_that_fits_best_is_found() -> None:
 
 def test_neighbours_on_the_line_of_the_bridge_fit_every_plane() -> None:
     assert plane_misfit(np.zeros((9, 3))).tolist() == [0.0, 0.0, 0.0]
+
+
+@pytest.mark.parametrize("tolerances", [(1e-2, 1e-5), (1e-5, 1e-2)])
+@pytest.mark.parametrize(
+    "make", [exact_strips.cylinder, exact_strips.cone, exact_strips.tangent_developable]
+)
+def test_a_rail_sampled_thirty_times_finer_has_invalid_bridges_at_inflections_only(
+    make: Callable[[int], exact_strips.ExactStrip], tolerances: tuple[float, float]
+) -> None:
+    strip = make(2)
+    p, q = (
+        sample_curve(curve, strip.interval, tolerance).points
+        for curve, tolerance in zip((strip.p_at, strip.q_at), tolerances, strict=True)
+    )
+    found = triangulate(p, q)
+    # Opposite the coarse chord that holds an inflection all samples of the fine rail are invalid.
+    shares = max(len(p) / len(q), len(q) / len(p))
+    assert 20.0 < shares < 40.0
+    assert found.inflection_count == found.invalid_count
+    assert found.invalid_count <= 1.2 * shares * len(strip.inflections)

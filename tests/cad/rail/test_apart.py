@@ -81,6 +81,16 @@ def test_rails_that_coincide_in_part_are_refused(p: b3d.Edge, q: b3d.Edge, over:
     assert float(found[1]) == pytest.approx(over, rel=0.01)
 
 
+@pytest.mark.parametrize("is_turned", [False, True])
+def test_the_ends_of_a_common_part_are_named(is_turned: bool) -> None:
+    p, q = (
+        b3d.Polyline(*[(0, -y, 0), (30, 0, 0), (60, 0, 0), (100, y, 0)][:: -1 if is_turned else 1])
+        for y in (10, -20)
+    )
+    ends = ["(30.0, 0.0, 0.0) mm", "(60.0, 0.0, 0.0) mm"][:: -1 if is_turned else 1]
+    assert f"mm, from {ends[0]} to {ends[1]}." in complaint(p, q)
+
+
 def test_an_offset_with_its_ends_closed_contains_the_curve_itself() -> None:
     curve = b3d.Spline((0, 0), (30, 10), (60, -5), (100, 0))
     assert "coincide" in complaint(curve, curve.offset_2d(7, side=b3d.Side.LEFT))

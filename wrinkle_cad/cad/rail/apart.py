@@ -72,8 +72,7 @@ def _sentence(faults: list[Meeting], p: Directrix, q: Directrix, longest: float)
     size = max(p.length, q.length)
     first = max(faults, key=_length)
     if _length(first) > longest:
-        ends = p.point_at(np.array([first.p_start, first.p_end]))
-        start, end = (place_text(at, size) for at in ends)
+        start, end = (place_text(at, size) for at in (first.point, first.end_point))
         return f"P and Q coincide over some {_length(first):.3g} mm, from {start} to {end}."
     first = faults[0]
     middle = (np.array(first.point) + np.array(first.end_point)) / 2.0
