@@ -27,6 +27,7 @@ from wrinkle_cad.report.limits import Limits
 from wrinkle_cad.report.material import Material
 from wrinkle_cad.report.numbers import Numbers, written
 from wrinkle_cad.report.page import write_page
+from wrinkle_cad.report.verdict import judge
 from wrinkle_cad.report.views import MeshView, StripView
 
 HOSTILE = (
@@ -308,3 +309,15 @@ def test_the_page_lets_only_its_own_scripts_run(good_view: StripView) -> None:
     assert page.parts.index(next(p for p in page.parts if p.tag == "meta")) < page.parts.index(
         page.all("script")[0]
     )
+
+
+def test_a_good_verdict_on_another_surface_than_the_piece_is_shown_as_unsure(
+    good_view: StripView,
+) -> None:
+    summary = summary_of([good_view])
+    assert "card verdict developable" in write_page(summary, [good_view])
+    summary["strips"][0]["cut"].update(longer_percent=14.0, differs=True)
+    summary["verdict"] = judge(summary["strips"], Limits()).as_json()
+    page = write_page(summary, [good_view])
+    assert "card verdict unsure" in page
+    assert "But the piece that is cut is another surface, up to 14.0% longer" in page

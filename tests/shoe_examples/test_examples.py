@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import importlib
 import json
+import runpy
 from collections.abc import Callable
 from functools import cache
 from pathlib import Path
@@ -16,6 +17,7 @@ from shoe_examples.rails import rail_points
 from shoe_examples.upper import section_poles, upper_face
 from tests.cad.measuring import bounding_box
 from tests.cad.stitch_checks import freecad_report, reread, shell_faults
+from wrinkle_cad import WrinkleStrip
 from wrinkle_cad.cad.exchange.read import read_cad
 from wrinkle_cad.cad.exchange.write import write_step
 from wrinkle_cad.cad.kernel.measures import face_areas, is_valid
@@ -146,3 +148,13 @@ def test_the_duct_that_is_kept_has_four_planes_and_four_cones() -> None:
         89_811.953498, rel=1e-5
     )
     assert judge_dxf(folder / "duct.dxf").is_clean
+
+
+def test_the_picture_of_the_states_shows_a_strip_of_each() -> None:
+    script = runpy.run_path(str(FOLDER / "states" / "picture.py"))
+    states = ("developable", "stretched", "creased", "folded")
+    strips = {
+        state: WrinkleStrip(*script["rails"]()[state], criteria=("bending",)) for state in states
+    }
+    assert {state: strip.report.state for state, strip in strips.items()} == {s: s for s in states}
+    assert (FOLDER / "states" / "picture.png").stat().st_size < 200_000

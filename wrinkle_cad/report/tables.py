@@ -17,6 +17,7 @@ _SIGN: Final = {
     "folded": "!",
     "passed": "\N{CHECK MARK}",
     "failed": "!",
+    "unsure": "?",
 }
 _PASSED: Final = {True: ("PASS", "pass"), False: ("FAIL", "fail")}
 _STITCH_ROWS: Final = (
@@ -65,7 +66,8 @@ def _headline(said: Mapping[str, Any]) -> str:
 def _tone(said: Mapping[str, Any]) -> str:
     """The panel's color: by the limits, or by the state where none are given."""
     passed = said["passed"]
-    return str(said["state"]) if passed is None else "passed" if passed else "failed"
+    tone = str(said["state"]) if passed is None else "passed" if passed else "failed"
+    return "unsure" if said["piece_differs"] and tone in ("developable", "passed") else tone
 
 
 def _limits(said: Mapping[str, Any]) -> Element:

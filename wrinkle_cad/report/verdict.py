@@ -65,6 +65,8 @@ class Verdict:
     """The verdict in one line."""
     meaning: str
     """What it means at the cutting table."""
+    piece_differs: bool
+    """Whether the piece that is cut of a strip is another surface than the one that is judged."""
     limits: tuple[str, ...]
     """The limits that were given; empty when there were none."""
     passed: bool | None
@@ -106,6 +108,7 @@ def judge(entries: Sequence[Mapping[str, Any]], limits: Limits) -> Verdict:
     bands = [strip for strip in said if strip.role == "band"]
     names = {strip.name for strip in leading}
     shown = [entry for entry in entries if entry["name"] in names]
+    others = [entry["cut"] for entry in shown if entry["cut"]["differs"]]
     state = _worst(leading)
     reasons = tuple(line for strip in leading for line in strip.missed)
     found = [
@@ -116,7 +119,8 @@ def judge(entries: Sequence[Mapping[str, Any]], limits: Limits) -> Verdict:
     return Verdict(
         state=state,
         headline=_headline(leading, shown, limits, found),
-        meaning=_MEANING[state] + _overlap_words(shown) + _other_piece_words(shown),
+        meaning=_MEANING[state] + _overlap_words(shown) + _other_piece_words(others),
+        piece_differs=bool(others),
         limits=limits.stated,
         passed=None if not limits.stated else not reasons,
         reasons=reasons,
@@ -265,14 +269,10 @@ def _worst(strips: Sequence[StripVerdict]) -> State:
     return next((state for state in _WORST_FIRST if state in states), "developable")
 
 
-def _other_piece_words(entries: Sequence[Mapping[str, Any]]) -> str:
-    cuts = [entry["cut"] for entry in entries if entry["cut"]["differs"]]
+def _other_piece_words(cuts: Sequence[Mapping[str, Any]]) -> str:
     if not cuts:
         return ""
-    return (
-        " But the piece that is cut is another surface than the one judged here:"
-        f" {_worst_cut(cuts)}. Cut a sample first."
-    )
+    return f" But the piece that is cut is another surface, {_worst_cut(cuts)}: cut a sample first."
 
 
 def _overlap_words(entries: Sequence[Mapping[str, Any]]) -> str:
