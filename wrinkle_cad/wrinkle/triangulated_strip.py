@@ -6,10 +6,10 @@ from copy import copy
 from dataclasses import fields, replace
 from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Final, Literal, Self
+from typing import TYPE_CHECKING, Any, Final, Self
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
 from wrinkle_cad import settings
 from wrinkle_cad.errors import Finding
@@ -18,6 +18,7 @@ from wrinkle_cad.options.signature import takes_options_of
 from wrinkle_cad.pattern.piece.options import PatternArguments, PieceSettings, SurfaceSide
 from wrinkle_cad.strip.convexity import validity_matrix
 from wrinkle_cad.strip.curve.polyline import polyline_length
+from wrinkle_cad.strip.flat.flat_map import FlatMap
 from wrinkle_cad.strip.flat.smooth_unrolling import unroll_smooth
 from wrinkle_cad.strip.flat.unrolling import Unrolling, unroll, unroll_cones
 from wrinkle_cad.strip.invalid_runs import find_invalid_runs
@@ -28,6 +29,7 @@ from .exact_surface import exact_surface, rail_curve
 from .gap_report import GapReport, gap_reports
 from .grain import Stock, inner_radii
 from .loudness import warn_of
+from .mapped_strip import MappedStrip
 from .smooth_surface import SmoothSurface, smooth_surface
 from .strip_findings import (
     FOLDED,
@@ -37,6 +39,7 @@ from .strip_findings import (
     sheet_findings,
 )
 from .strip_report import Role, StripReport, report_on
+from .surface_map import map_of
 
 if TYPE_CHECKING:
     from build123d import Shell
@@ -45,6 +48,7 @@ if TYPE_CHECKING:
 
     from wrinkle_cad.cad.rail.directrix import Directrix
     from wrinkle_cad.strip.curve.sampling import Samples
+    from wrinkle_cad.strip.rulings.smooth_path import SmoothPath
     from wrinkle_cad.strip.rulings.surface import RuledStrip
 
     from .cut_pattern import Pattern
@@ -53,7 +57,7 @@ if TYPE_CHECKING:
 _NO_STOCK: Final = Stock()
 
 
-class TriangulatedStrip:
+class TriangulatedStrip(MappedStrip):
     """A triangulated strip between two sampled directrices.
 
     Surfaces, unrolling and report are made when first asked for. A strip does not change.
@@ -177,27 +181,6 @@ class TriangulatedStrip:
 
         return to_build123d(self.topods_shell(surface), label=self.name, color=self.color)
 
-    def rail_points(self, rail: Literal["P", "Q"], arcs_mm: ArrayLike) -> NDArray[np.float64]:
-        """Points on the surface's edge at arc lengths from the rail's start.
-
-        Args:
-            rail: ``P`` or ``Q``.
-            arcs_mm: (k,) along the edge: the curve, or its chords for facets.
-
-        Returns:
-            (k, 3) float64, mm.
-
-        Raises:
-            InputError: an arc length lies beyond the edge.
-        """
-        from wrinkle_cad.cad.rail.directrix import make_directrix
-        from wrinkle_cad.cad.rail.rail_points import points_at_arcs
-
-        curve, samples = (self.p, self.p_samples) if rail == "P" else (self.q, self.q_samples)
-        if self.surface == "facets":
-            curve = make_directrix(samples.points)
-        return points_at_arcs(curve, arcs_mm)
-
     @property
     def unrolling(self) -> Unrolling:
         """The strip laid flat, as its surface is: smooth pieces, cones or facets."""
@@ -214,9 +197,20 @@ class TriangulatedStrip:
             return unroll(self.triangulation)
         tolerance = settings.FLAT_LINE_PER_TOLERANCE * self.tolerance
         samples, curves = (self.p_samples, self.q_samples), (self.p.point_at, self.q.point_at)
-        if self.surface == "smooth" and self._smooth.made is not None:
-            return unroll_smooth(self._smooth.made[1], samples, curves, tolerance=tolerance)
+        if self._path is not None:
+            return unroll_smooth(self._path, samples, curves, tolerance=tolerance)
         return unroll_cones(self.triangulation, *samples, *curves, tolerance=tolerance)
+
+    @property
+    def _path(self) -> SmoothPath | None:
+        """The pieces of a smooth surface."""
+        made = self._smooth.made if self.surface == "smooth" else None
+        return None if made is None else made[1]
+
+    def _mapped(self) -> FlatMap:
+        rails, samples = (self.p, self.q), (self.p_samples, self.q_samples)
+        is_faceted = self.surface == "facets"
+        return map_of(rails, samples, self.triangulation, self.unrolling, self._path, is_faceted)
 
     @cached_property
     def valid(self) -> NDArray[np.bool_]:

@@ -36,10 +36,19 @@ def edges_as_drawn(source: object, name: str) -> list[TopoDS_Edge]:
     Raises:
         InputError: there is no curve in it, or something that is none.
     """
-    return [edge for shape in _shapes_in(source, name) for edge in _edges_in(shape, name)]
+    return [edge for shape in shapes_in(source, name) for edge in _edges_in(shape, name)]
 
 
-def _shapes_in(source: object, name: str) -> list[TopoDS_Shape]:
+def shapes_in(source: object, name: str) -> list[TopoDS_Shape]:
+    """Returns the shapes that a caller holds, in the order in which they were drawn.
+
+    Args:
+        source: as for ``edges_as_drawn``.
+        name: what messages call it, at the start of a sentence.
+
+    Raises:
+        InputError: something in it is no shape.
+    """
     shape = source if isinstance(source, TopoDS_Shape) else getattr(source, "wrapped", None)
     if isinstance(shape, TopoDS_Shape):
         if shape.IsNull():
@@ -47,7 +56,7 @@ def _shapes_in(source: object, name: str) -> list[TopoDS_Shape]:
         return [shape]
     held = _held_by(source)
     if isinstance(held, Iterable) and not isinstance(held, str | bytes):
-        return [shape for item in held for shape in _shapes_in(item, name)]
+        return [shape for item in held for shape in shapes_in(item, name)]
     raise InputError(
         f"{name} cannot be of type {type(source).__name__}: pass an edge, a wire, a list of edges"
         " or a (k, 3) array."

@@ -55,6 +55,8 @@ class FlatPiece:
     """(k, 2) float64, mm; their ends on P."""
     q: Floats
     """(k, 2) float64, mm; their ends on Q."""
+    angle: Floats
+    """(k,) float64, rad; their direction from P to Q, from the x axis on."""
     p_arc: Floats
     """(k,) float64, mm; length along P from the piece's start."""
     q_arc: Floats
@@ -107,11 +109,7 @@ def lay_flat(
     turned = _running(motion.turn, half)
     way = start[1] - start[0]
     begin = float(atan2(way[1], way[0])) if way.any() else np.pi / 2.0
-    angle = begin + turned.inside.ravel()
-    # Forward across a ruling is to its right: Q is on the left of P.
-    ahead = np.stack((sin(angle), -cos(angle)), axis=1)
-    along = np.stack((cos(angle), sin(angle)), axis=1)
-    step = motion.p_along[:, None] * along + motion.p_across[:, None] * ahead
+    step = motion.p_step(begin + turned.inside.ravel())
     p = np.stack(
         [start[0][axis] + _running(step[:, axis], half).at_edges for axis in range(2)], axis=1
     )
@@ -122,7 +120,28 @@ def lay_flat(
     p_arc, q_arc, area = (
         _running(values, half).at_edges for values in (motion.p_speed, motion.q_speed, motion.area)
     )
-    return FlatPiece(edges, p, q, p_arc, q_arc, float(area[-1]))
+    return FlatPiece(edges, p, q, final, p_arc, q_arc, float(area[-1]))
+
+
+def flat_rulings(family: RulingFamily, flat: FlatPiece, place: Floats) -> tuple[Floats, Floats]:
+    """Returns (k, 2) mm each: where the ends on P and Q of rulings at (k,) places lie flat.
+
+    Args:
+        family: the piece's rulings.
+        flat: the piece in the plane.
+        place: (k,) float64, from 0 to 1.
+    """
+    cell = np.searchsorted(flat.places, place, side="right") - 1
+    cell = np.clip(cell, 0, len(flat.places) - 2)
+    half = (place - flat.places[cell])[:, None] / 2.0
+    motion = _Motion(family, (flat.places[cell][:, None] + half * (1.0 + NODES)).ravel())
+    turned = _parts(motion.turn, half)
+    step = motion.p_step((flat.angle[cell][:, None] + turned[:, :-1]).ravel())
+    moved = np.stack([_parts(step[:, axis], half)[:, -1] for axis in range(2)], axis=1)
+    p, final = flat.p[cell] + moved, flat.angle[cell] + turned[:, -1]
+    p_space, q_space = family.points_at(place)
+    reach = lengths(q_space - p_space)[:, None]
+    return p, p + reach * np.stack((cos(final), sin(final)), axis=1)
 
 
 def _edges(family: RulingFamily, panels: int) -> Floats:
@@ -149,6 +168,13 @@ class _Motion:
         )
         self.area = reach * (self.p_across + q_across) / 2.0
 
+    def p_step(self, angle: Floats) -> Floats:
+        """(k, 2) mm: how P's ends move in the plane, where the rulings have (k,) directions."""
+        # Forward across a ruling is to its right: Q is on the left of P.
+        ahead = np.stack((sin(angle), -cos(angle)), axis=1)
+        along = np.stack((cos(angle), sin(angle)), axis=1)
+        return self.p_along[:, None] * along + self.p_across[:, None] * ahead
+
 
 @dataclass(frozen=True, slots=True, eq=False)
 class _Running:
@@ -162,10 +188,15 @@ class _Running:
 
 def _running(values: Floats, half: Floats) -> _Running:
     """The integral of (10 c,) values at the nodes of c panels of half widths (c, 1)."""
+    parts = _parts(values, half)
+    before = np.concatenate(([0.0], np.cumsum(parts[:, -1])))
+    return _Running(before[:-1, None] + parts[:, :-1], before)
+
+
+def _parts(values: Floats, half: Floats) -> Floats:
+    """(c, 11): the integral over each panel from its start to its nodes, and to its end."""
     rows = values.reshape(len(half), len(NODES))
     parts = np.zeros((len(half), len(NODES) + 1))
     for node in range(len(NODES)):
         parts += rows[:, node : node + 1] * _INTEGRALS[:, node]
-    parts *= half
-    before = np.concatenate(([0.0], np.cumsum(parts[:, -1])))
-    return _Running(before[:-1, None] + parts[:, :-1], before)
+    return parts * half
