@@ -11,6 +11,8 @@ from collections.abc import Iterable
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from OCP.BRep import BRep_Builder, BRep_Tool
+from OCP.BRepBuilderAPI import BRepBuilderAPI_MakeSolid
+from OCP.BRepLib import BRepLib
 from OCP.gp import gp_Pnt
 from OCP.TopAbs import (
     TopAbs_EDGE,
@@ -28,6 +30,7 @@ from OCP.TopoDS import (
     TopoDS_Face,
     TopoDS_Shape,
     TopoDS_Shell,
+    TopoDS_Solid,
     TopoDS_Vertex,
     TopoDS_Wire,
 )
@@ -151,6 +154,13 @@ def vertex_point(vertex: TopoDS_Vertex) -> Floats:
     """Returns (3,) mm: where a vertex is."""
     point = BRep_Tool.Pnt_s(vertex)
     return np.array([point.X(), point.Y(), point.Z()])
+
+
+def solid_inside(shell: TopoDS_Shell) -> TopoDS_Solid:
+    """Returns the solid that a closed shell bounds, its faces looking out."""
+    solid = BRepBuilderAPI_MakeSolid(shell).Solid()
+    BRepLib.OrientClosedSolid_s(solid)
+    return solid
 
 
 def make_compound(shapes: Iterable[TopoDS_Shape]) -> TopoDS_Compound:

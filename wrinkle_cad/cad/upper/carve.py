@@ -13,13 +13,14 @@ from wrinkle_cad.cad.kernel.connectivity import border_chain, connected_groups, 
 from wrinkle_cad.cad.kernel.curves import edge_middle
 from wrinkle_cad.cad.kernel.measures import face_areas, length_of
 from wrinkle_cad.cad.kernel.shape_index import ShapeIndex
-from wrinkle_cad.cad.kernel.topology import faces_of, free_edges, make_compound, unwrap
+from wrinkle_cad.cad.kernel.topology import faces_of, free_edges, make_compound
 from wrinkle_cad.cad.rail.closed_starts import are_closed
 from wrinkle_cad.cad.rail.directrix import Directrix, make_directrix, orient_alike
 from wrinkle_cad.errors import CadError, InputError
 from wrinkle_cad.options.checking import check_numbers
 from wrinkle_cad.options.signature import knows_its_options
 
+from .given_upper import upper_object, upper_shape
 from .opening import CarveRequest, Opening
 from .opening_outline import Rail
 from .opening_plan import ENDS, OpeningPlan, plan_opening
@@ -54,7 +55,8 @@ def carve(
     joins its parts again.
 
     Args:
-        upper: a face, shell, solid or compound of faces; sewn or not. It is not written to.
+        upper: a face, shell, solid (its outer shell), part, compound or list of such, sewn or not;
+            a builder of build123d or a workplane of CadQuery with one. It is not written to.
         p: a rail: whatever ``make_directrix`` takes.
         q: the other rail; run either way.
         margin: mm; how far the opening reaches beyond the rails. The margin fades to 0 at the ends.
@@ -80,7 +82,7 @@ def carve(
     request = carve_request(
         p, q, margin=margin, fade=fade, limit=limit, join=join, allow_split=allow_split
     )
-    return carve_shape(unwrap(upper), request, source=upper)
+    return carve_shape(upper_shape(upper), request, source=upper_object(upper))
 
 
 def carve_all(
@@ -139,7 +141,7 @@ def carve_all(
         )
         for (p, q), name in zip(rails, called, strict=True)
     ]
-    return carve_shapes(unwrap(upper), requests, source=upper)
+    return carve_shapes(upper_shape(upper), requests, source=upper_object(upper))
 
 
 def _letters(k: int) -> str:

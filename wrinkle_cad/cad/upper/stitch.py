@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
+from pathlib import Path
 from typing import TYPE_CHECKING, cast
 
 import numpy as np
@@ -12,9 +13,10 @@ from numpy.typing import NDArray
 from OCP.TopoDS import TopoDS_Edge, TopoDS_Face, TopoDS_Shape, TopoDS_Shell
 
 from wrinkle_cad import settings
+from wrinkle_cad.cad.exchange.shapes import FaceStyle, Part
 from wrinkle_cad.cad.kernel.curves import edge_ends
 from wrinkle_cad.cad.kernel.measures import check_valid, face_areas, tolerance_of
-from wrinkle_cad.cad.kernel.topology import faces_of
+from wrinkle_cad.cad.kernel.topology import faces_of, solid_inside
 from wrinkle_cad.cad.rail.directrix import Directrix
 from wrinkle_cad.errors import CadError, InputError
 from wrinkle_cad.options.checking import check_numbers
@@ -31,7 +33,7 @@ from .seam_angle import SeamAngle, seam_angles
 from .sew import Sewn, sew
 
 if TYPE_CHECKING:
-    from build123d import Shell
+    from build123d import Shell, Solid
 
 Floats = NDArray[np.float64]
 STEP = "stitch the wrinkle into the upper"
@@ -121,6 +123,58 @@ class Stitched:
         from wrinkle_cad.cad.exchange.likeness import alike
 
         return cast("Shell", alike(self.shell_shape, self.source, "upper"))
+
+    def solid(self) -> Solid:
+        """Returns the solid inside, with the upper's name and color: of a closed upper.
+
+        Raises:
+            InputError: the upper has a border.
+        """
+        from wrinkle_cad.cad.exchange.likeness import alike
+
+        if self.report.free_edges_after:
+            raise InputError(
+                f"The upper has a border of {self.report.free_length_after_mm:.6g} mm, so it bounds"
+                " no solid. Close it, or take the shell."
+            )
+        return cast("Solid", alike(solid_inside(self.shell_shape), self.source, "upper"))
+
+    def export_step(
+        self, path: str | Path, *, schema: settings.StepSchema = settings.STEP_SCHEMA
+    ) -> None:
+        """Writes the shell as STEP, its faces named after the body, the wrinkles and their bands.
+
+        Raises:
+            ExportError: the file could not be written; what stood there before is untouched.
+        """
+        from wrinkle_cad.cad.exchange.write import write_step
+
+        write_step(Path(path), [self._part()], schema=schema)
+
+    def export_stl(self, path: str | Path, *, tolerance: float = settings.TOLERANCE) -> None:
+        """Writes the shell as binary STL.
+
+        Args:
+            path: of the file.
+            tolerance: mm; how far the triangles may lie off the shell.
+
+        Raises:
+            ExportError: the file could not be written; what stood there before is untouched.
+        """
+        from wrinkle_cad.cad.exchange.write import write_stl
+
+        write_stl(Path(path), self.shell_shape, tolerance=tolerance)
+
+    def _part(self) -> Part:
+        color = getattr(self.source, "color", None)
+        upper = settings.UPPER_COLOR if color is None else tuple(color)[:3]
+        styles = [
+            FaceStyle(face, name, upper if name == BODY else settings.BAND_COLOR)
+            for name, faces in self.parts
+            for face in faces
+        ]
+        label = str(getattr(self.source, "label", "") or "upper")
+        return Part(self.shell_shape, label, upper, styles)
 
 
 @knows_its_options
