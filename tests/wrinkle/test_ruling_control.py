@@ -40,6 +40,22 @@ def test_a_pinned_ruling_is_there_by_lengths_and_by_points() -> None:
     assert by_points.area_mm2 == pytest.approx(by_length.area_mm2, rel=1e-9)
 
 
+def test_the_verdict_is_about_a_surface_that_keeps_what_is_asked() -> None:
+    """A ruling across a cylinder: a crease between the planes of its ends' tangents."""
+    tube = Edge.make_circle(50), Pos(0, 0, 60) * Edge.make_circle(50)
+    free, held = WrinkleStrip(*tube), WrinkleStrip(*tube, pinned=[(30.0, 40.0)])
+    assert free.report.state == "developable"
+    assert held.report.state == "creased"
+    assert math.degrees(held.ruled.largest_crease) == pytest.approx(11.62, abs=0.01)
+    assert not held.cut.differs
+    stretch = (60.0, 75.0, 55.0, 70.0)
+    around = WrinkleStrip(P, Q, forbidden=[stretch])
+    for strip, enters in ((WrinkleStrip(P, Q), True), (around, False)):
+        arcs = strip.ruled.sheet.p_arc, strip.ruled.sheet.q_arc
+        inside = (arcs[0] > 60.01) & (arcs[0] < 74.99) & (arcs[1] > 55.01) & (arcs[1] < 69.99)
+        assert bool(inside.any()) == enters
+
+
 def test_no_ruling_joins_forbidden_stretches() -> None:
     strip = WrinkleStrip(P, Q, forbidden=[(20.0, 50.0, 20.0, 50.0)])
     t = strip.triangulation

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from wrinkle_cad.strip.rulings.closed import rule_closed_strip
+from wrinkle_cad.strip.rulings.held import NOTHING_HELD, Held
 from wrinkle_cad.strip.rulings.rail_curve import RailCurve
 from wrinkle_cad.strip.rulings.surface import RuledStrip, rule_strip
 from wrinkle_cad.strip.rulings.through_points import rail_through
@@ -21,6 +22,7 @@ def exact_surface(
     p_samples: Samples,
     q_samples: Samples,
     triangulation: Triangulation,
+    held: Held = NOTHING_HELD,
 ) -> RuledStrip:
     """Returns the surface between two directrices that their triangulation approximates.
 
@@ -30,6 +32,7 @@ def exact_surface(
         p_samples: the samples of P.
         q_samples: the samples of Q.
         triangulation: of these samples.
+        held: what was asked of the rulings, in parameters of the directrices.
     """
     rails = (rail_curve(p), rail_curve(q))
     counts = (len(triangulation.p), len(triangulation.q))
@@ -42,7 +45,7 @@ def exact_surface(
     # A closed strip's triangulation is cut open; its rails start where it is cut.
     is_closed = p.is_closed and q.is_closed
     rule = rule_closed_strip if is_closed else rule_strip
-    return rule(*rails, (at_p, at_q), triangulation.max_lean)
+    return rule(*rails, (at_p, at_q), triangulation.max_lean, held)
 
 
 def rail_curve(directrix: Directrix) -> RailCurve:

@@ -113,9 +113,10 @@ def _found_with(
     else:
         mend = _mending(rails, search, chosen.tolerance)
         triangulation, samples = _better(search, mend, samples, own)
-        return FoundStrip(rails, samples, triangulation)
+        return FoundStrip(rails, samples, triangulation, control.held_by(samples, triangulation))
     triangulation, samples = _mending(rails, search, chosen.tolerance)(triangulation, samples)
-    return FoundStrip(rails, samples, replace(triangulation, unused=unused))
+    held = control.held_by(samples, triangulation)
+    return FoundStrip(rails, samples, replace(triangulation, unused=unused), held)
 
 
 def _mending(rails: tuple[Directrix, Directrix], search: Search, tolerance: float) -> Mend:

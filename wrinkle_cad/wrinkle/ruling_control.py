@@ -21,6 +21,8 @@ from wrinkle_cad.cad.rail.rail_points import points_at_arcs
 from wrinkle_cad.errors import InputError
 from wrinkle_cad.strip.curve.polyline import arc_lengths, row_lengths
 from wrinkle_cad.strip.curve.sampling import Samples
+from wrinkle_cad.strip.rulings.held import Held
+from wrinkle_cad.strip.triangulation import Triangulation
 
 from .options import StripSettings
 
@@ -74,6 +76,24 @@ class RulingControl:
         ]
         pinned = [_bridge_at(p, q, places, is_open_ring) for places in self.pinned]
         return {"pinned": pinned, "forbidden": forbidden, **self.limits}
+
+    def held_by(self, samples: tuple[Samples, Samples], found: Triangulation) -> Held:
+        """Returns what is asked, in parameters of the rails that were found.
+
+        Args:
+            samples: of P and of Q; those of a closed rail end with their first one again.
+            found: their triangulation, which keeps what is asked.
+        """
+        return Held(
+            tuple(_pinned_at(samples, found, places) for places in self.pinned),
+            tuple(
+                (
+                    *_span(samples[0], stretch[:2], is_ring=self.is_ring),
+                    *_span(samples[1], stretch[2:], is_ring=self.is_ring),
+                )
+                for stretch in self.forbidden
+            ),
+        )
 
 
 def control_of(chosen: StripSettings, p: Directrix, q: Directrix, *, closed: bool) -> RulingControl:
@@ -231,3 +251,27 @@ def _bridge_at(p: Floats, q: Floats, places: Places, is_cut: bool) -> tuple[int,
         choices,
         key=lambda at: abs(float(p_arcs[at[0]] / p_arcs[-1] - q_arcs[at[1]] / q_arcs[-1])),
     )
+
+
+def _pinned_at(
+    samples: tuple[Samples, Samples], found: Triangulation, places: Places
+) -> tuple[float, float]:
+    """Parameters of the bridge between two places."""
+    off = np.zeros(len(found.bridges))
+    for own, index, place in zip(samples, found.bridges.T, places, strict=True):
+        off += row_lengths(own.points[index] - place)
+    i, j = found.bridges[int(off.argmin())].tolist()
+    return float(samples[0].parameters[i]), float(samples[1].parameters[j])
+
+
+def _span(samples: Samples, ends: Places, *, is_ring: bool) -> tuple[float, float]:
+    """Parameters between which a stretch lies; on a ring the end may be on the next turn."""
+    first, last = (_nearest(samples.points, end) for end in ends)
+    low, high = (float(samples.parameters[k]) for k in (first, last))
+    whole = float(samples.parameters[-1] - samples.parameters[0])
+    if is_ring:
+        return low, high if high > low else high + whole
+    # At the end of an open rail there is no other side of the stretch; a point has none at all.
+    beyond = max(whole, 1.0)
+    count = len(samples.points)
+    return low - beyond * (first == 0), high + beyond * (last == count - 1)

@@ -22,6 +22,7 @@ from wrinkle_cad.strip.flat.flat_map import FlatMap
 from wrinkle_cad.strip.flat.smooth_unrolling import unroll_smooth
 from wrinkle_cad.strip.flat.unrolling import Unrolling, unroll, unroll_cones
 from wrinkle_cad.strip.invalid_runs import find_invalid_runs
+from wrinkle_cad.strip.rulings.held import NOTHING_HELD, Held
 from wrinkle_cad.strip.triangulation import Triangulation, triangulate
 
 from .cut_report import CutReport, cut_findings, cut_report
@@ -75,6 +76,7 @@ class TriangulatedStrip(MappedStrip):
         role: ``strip``, or ``band`` between a strip and the body.
         stock: thickness, K-factor and grain of the material, and which side of it the surface is.
         findings: what was noticed while it was made.
+        held: what was asked of the rulings; the triangulation keeps it.
     """
 
     def __init__(
@@ -92,6 +94,7 @@ class TriangulatedStrip(MappedStrip):
         role: Role = "strip",
         stock: Stock = _NO_STOCK,
         findings: tuple[Finding, ...] = (),
+        held: Held = NOTHING_HELD,
     ) -> None:
         self.p, self.q = p, q
         self.p_samples, self.q_samples = p_samples, q_samples
@@ -102,6 +105,7 @@ class TriangulatedStrip(MappedStrip):
         self.surface: settings.Surface = surface
         self.role: Role = role
         self.stock = stock
+        self.held = held
         self._noticed = (*findings, *shape_findings(name, triangulation))
         self._is_told = warn_of(self._noticed, 3)
         self._shells: dict[str, TopoDS_Shell] = {}
@@ -222,22 +226,21 @@ class TriangulatedStrip(MappedStrip):
     @cached_property
     def least_bending(self) -> Triangulation:
         """The triangulation that bends least, whatever its validity (GMBT)."""
-        return triangulate(
-            self.p_samples.points,
-            self.q_samples.points,
-            criteria=("bending",),
-            energy=self.triangulation.energy,
-            planarity=self.triangulation.planarity,
-        )
+        return self._found_by(("bending",), "global")
 
     @cached_property
     def local(self) -> Triangulation:
         """What the local search finds (LODT and LMBT)."""
+        return self._found_by(("invalid", "bending"), "local")
+
+    def _found_by(
+        self, criteria: tuple[settings.Criterion, ...], search: settings.Search
+    ) -> Triangulation:
         return triangulate(
             self.p_samples.points,
             self.q_samples.points,
-            criteria=("invalid", "bending"),
-            search="local",
+            criteria=criteria,
+            search=search,
             energy=self.triangulation.energy,
             planarity=self.triangulation.planarity,
         )
@@ -279,14 +282,14 @@ class TriangulatedStrip(MappedStrip):
     @cached_property
     def cut(self) -> CutReport:
         """How the piece that is cut differs from the exact surface, which is judged."""
-        samples = (self.p_samples, self.q_samples)
-        rails = (self.p, self.q)
+        rails, samples = (self.p, self.q), (self.p_samples, self.q_samples)
         return cut_report(self.ruled, self.unrolling, rails, samples, self.tolerance)
 
     @cached_property
     def ruled(self) -> RuledStrip:
         """The exact surface between the two curves: rulings, pieces, strain, creases, radii."""
-        return exact_surface(self.p, self.q, self.p_samples, self.q_samples, self.triangulation)
+        rails, samples = (self.p, self.q), (self.p_samples, self.q_samples)
+        return exact_surface(*rails, *samples, self.triangulation, self.held)
 
     @cached_property
     def gaps(self) -> tuple[GapReport, ...]:
@@ -296,7 +299,7 @@ class TriangulatedStrip(MappedStrip):
             self.ruled,
             self.triangulation,
             is_closed=self.p.is_closed and self.q.is_closed,
-            may_turn=self.role == "strip",
+            may_turn=self.role == "strip" and self.held == NOTHING_HELD,
         )
 
     @property

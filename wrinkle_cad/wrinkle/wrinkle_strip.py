@@ -81,6 +81,7 @@ class WrinkleStrip(TriangulatedStrip):
                 *unused_findings(chosen.name, found.triangulation.unused),
                 *size_findings(chosen.name, found.triangulation, chosen.tolerance),
             ),
+            held=found.held,
         )
 
     def export_html(

@@ -19,6 +19,7 @@ from wrinkle_cad.strip.curve.sampling import Samples
 from wrinkle_cad.strip.cut_open import cut_at
 from wrinkle_cad.strip.flat.overlap import is_overlapping
 from wrinkle_cad.strip.flat.unrolling import unroll
+from wrinkle_cad.strip.rulings.held import NOTHING_HELD, Held
 from wrinkle_cad.strip.triangulation import Triangulation
 
 from .closed_starts import started_at
@@ -42,6 +43,8 @@ class FoundStrip:
     """Of P and of Q; of a closed rail the first point is repeated at the end."""
     triangulation: Triangulation
     """Between these samples."""
+    held: Held = NOTHING_HELD
+    """What was asked of its rulings, in parameters of the rails."""
 
 
 def without_end(samples: Samples) -> Floats:

@@ -9,10 +9,11 @@ import numpy as np
 import numpy.typing as npt
 
 from .creases import Crease
+from .held import NOTHING_HELD, Held
 from .rail_curve import RailCurve
 from .sheet import Sheet
 from .stations import Stations
-from .surface import RuledStrip, rule_sheet, ruled_strip_of
+from .surface import FoundSheet, RuledStrip, rule_sheet, ruled_strip_of
 
 Floats = npt.NDArray[np.float64]
 
@@ -25,6 +26,7 @@ def rule_closed_strip(
     q: RailCurve,
     bridges: tuple[Floats, Floats],
     max_lean: float | None = None,
+    held: Held = NOTHING_HELD,
 ) -> RuledStrip:
     """Returns the surface of a closed strip, over one turn; creases count arcs from rails' starts.
 
@@ -34,6 +36,7 @@ def rule_closed_strip(
         bridges: (k,) float64 each; parameters of the bridges of one turn, in order, the last one
             a whole interval behind the first on both rails, whatever the interval's end.
         max_lean: rad; as for ``rule_strip``.
+        held: likewise; on the turn of the bridges.
     """
     rails = (p, q)
     starts = [float(at[0]) for at in bridges]
@@ -42,12 +45,14 @@ def rule_closed_strip(
         np.concatenate((at, at[1:] + (rail.interval[1] - rail.interval[0])))
         for rail, at in zip(rails, bridges, strict=True)
     ]
-    sheet, spacing = rule_sheet(turns[0], turns[1], (twice[0], twice[1]), max_lean)
+    period = (p.interval[1] - p.interval[0], q.interval[1] - q.interval[0])
+    found = rule_sheet(turns[0], turns[1], (twice[0], twice[1]), max_lean, held.around(period))
+    sheet = found.sheet
     along = sheet.p_arc + sheet.q_arc
     whole = p.length + q.length
     first = int(np.searchsorted(along, whole / 2.0))
     last = int(np.searchsorted(along, along[first] + whole * (1.0 - 1e-12)))
-    both = ruled_strip_of(sheet, turns[0], turns[1], spacing)
+    both = ruled_strip_of(found, turns[0], turns[1])
     arcs = [
         float(rail.arc_at(np.array([start]))[0]) for rail, start in zip(rails, starts, strict=True)
     ]
@@ -56,7 +61,11 @@ def rule_closed_strip(
         for crease in both.creases
         if first <= crease.ruling < last
     )
-    turn = ruled_strip_of(_part(sheet, first, last), turns[0], turns[1], spacing)
+    turn = ruled_strip_of(
+        FoundSheet(_part(sheet, first, last), found.spacing, found.held - first),
+        turns[0],
+        turns[1],
+    )
     return replace(turn, creases=creases, radius=both.radius[first:last])
 
 

@@ -12,6 +12,17 @@ import numpy.typing as npt
 from .bending import radius_along
 from .chains import with_exact_fans
 from .creases import Crease, creases_of
+from .held import (
+    NOTHING_HELD,
+    Held,
+    Place,
+    Section,
+    corners_entered,
+    held_rulings,
+    joined,
+    places_between,
+    sections_of,
+)
 from .least_twist import Pairing, finer_pairing, first_spacing, pairing_near
 from .pieces import Piece, developable_share, pieces_of
 from .rail_curve import RailCurve
@@ -20,6 +31,7 @@ from .stations import slid, stations_of
 from .strain import Strain, strain_of
 
 Floats = npt.NDArray[np.float64]
+Ints = npt.NDArray[np.int64]
 
 MOST_FINER: Final = 2
 """A grid is made finer at most so often ..."""
@@ -78,6 +90,7 @@ def rule_strip(
     q: RailCurve,
     bridges: tuple[Floats, Floats],
     max_lean: float | None = None,
+    held: Held = NOTHING_HELD,
 ) -> RuledStrip:
     """Returns the surface between two curves that is nearest to developable near a triangulation.
 
@@ -86,9 +99,22 @@ def rule_strip(
         q: the curve Q, run the same way.
         bridges: (k,) float64 each; parameters on P and Q of the triangulation's bridges, in order.
         max_lean: rad; how far a ruling may lean from the shortest crossing; any way when None.
+        held: rulings that must be, which then end pieces, and stretches that none may join; the
+            triangulation keeps both.
     """
-    sheet, spacing = rule_sheet(p, q, bridges, max_lean)
-    return ruled_strip_of(sheet, p, q, spacing)
+    return ruled_strip_of(rule_sheet(p, q, bridges, max_lean, held), p, q)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class FoundSheet:
+    """The tangent planes of a surface, and how they were found."""
+
+    sheet: Sheet
+    """The tangent planes."""
+    spacing: float
+    """mm between the nodes that they were found on."""
+    held: Ints
+    """Numbers of the rulings that were held."""
 
 
 def rule_sheet(
@@ -96,40 +122,71 @@ def rule_sheet(
     q: RailCurve,
     bridges: tuple[Floats, Floats],
     max_lean: float | None = None,
-) -> tuple[Sheet, float]:
-    """Returns the tangent planes of that surface, and the mm between the nodes it was found on.
+    held: Held = NOTHING_HELD,
+) -> FoundSheet:
+    """Returns the tangent planes of that surface.
 
     Args:
         p: the curve P.
         q: the curve Q.
         bridges: as for `rule_strip`.
         max_lean: likewise.
+        held: likewise.
     """
-    pairing = pairing_near(p, q, bridges, first_spacing(p, q, bridges), max_lean)
-    strain = strain_of(_exact(p, q, pairing)).largest
+    pinned = list(held.pinned)
+    for _ in range(len(held.forbidden) + 1):
+        places = places_between(p, q, pinned)
+        sheet, spacing = _between(p, q, bridges, max_lean, places)
+        corners = corners_entered(sheet.rulings, bridges, held.forbidden)
+        if not corners:
+            break
+        pinned += corners
+    return FoundSheet(sheet, spacing, held_rulings(sheet.rulings, places))
+
+
+def _between(
+    p: RailCurve,
+    q: RailCurve,
+    bridges: tuple[Floats, Floats],
+    max_lean: float | None,
+    places: list[Place],
+) -> tuple[Sheet, float]:
+    """The sheet that has some rulings, and the mm between its nodes."""
+    sections = sections_of(p, q, bridges, places)
+    spacing = first_spacing(p, q, bridges)
+    found = [pairing_near(one.p, one.q, one.bridges, spacing, max_lean) for one in sections]
+    strain = strain_of(_exact(p, q, sections, found)).largest
     for _ in range(MOST_FINER):
-        pairing = finer_pairing(p, q, pairing, max_lean)
-        sheet = _exact(p, q, pairing)
+        found = [
+            finer_pairing(one.p, one.q, pairing, max_lean)
+            for one, pairing in zip(sections, found, strict=True)
+        ]
+        sheet = _exact(p, q, sections, found)
         before, strain = strain, strain_of(sheet).largest
         if abs(strain - before) <= max(STABLE_STRAIN, STABLE_SHARE * strain):
             break
-    return sheet, pairing.spacing
+    return sheet, found[0].spacing
 
 
-def ruled_strip_of(sheet: Sheet, p: RailCurve, q: RailCurve, spacing: float) -> RuledStrip:
-    """Returns the pieces and figures of a sheet.
+def ruled_strip_of(found: FoundSheet, p: RailCurve, q: RailCurve) -> RuledStrip:
+    """Returns the pieces and figures of a sheet; rulings that were held end pieces.
 
     Args:
-        sheet: its tangent planes.
+        found: its tangent planes.
         p: the curve P.
         q: the curve Q.
-        spacing: mm between the nodes that it was found on.
     """
-    creases = creases_of(sheet, p, q, spacing)
-    pieces = pieces_of(sheet, np.array([crease.ruling for crease in creases], dtype=np.int64))
+    sheet = found.sheet
+    creases = creases_of(sheet, p, q, found.spacing)
+    at = np.array([crease.ruling for crease in creases], dtype=np.int64)
+    pieces = pieces_of(sheet, np.union1d(at, found.held))
     return RuledStrip(sheet, pieces, creases, strain_of(sheet), radius_along(sheet, pieces))
 
 
-def _exact(p: RailCurve, q: RailCurve, pairing: Pairing) -> Sheet:
-    rulings = with_exact_fans(pairing.p, pairing.q, stations_of(pairing), pairing.spacing)
-    return sheet_of(p, q, slid(p, q, rulings, pairing.spacing), pairing.spacing)
+def _exact(p: RailCurve, q: RailCurve, sections: list[Section], found: list[Pairing]) -> Sheet:
+    spacing = found[0].spacing
+    rulings = []
+    for one, pairing in zip(sections, found, strict=True):
+        own = with_exact_fans(pairing.p, pairing.q, stations_of(pairing), spacing)
+        rulings.append(slid(one.p, one.q, own, spacing))
+    return sheet_of(p, q, joined(sections, rulings), spacing)
