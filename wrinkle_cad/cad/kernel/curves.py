@@ -8,7 +8,7 @@ from OCP.Approx import Approx_Curve3d
 from OCP.BRep import BRep_Tool
 from OCP.BRepAdaptor import BRepAdaptor_Curve
 from OCP.Geom import Geom_BSplineCurve, Geom_Circle, Geom_Line, Geom_TrimmedCurve
-from OCP.GeomAbs import GeomAbs_C1, GeomAbs_Circle, GeomAbs_Line
+from OCP.GeomAbs import GeomAbs_C1, GeomAbs_Circle, GeomAbs_Line, GeomAbs_OffsetCurve
 from OCP.GeomConvert import GeomConvert
 from OCP.TopAbs import TopAbs_REVERSED
 from OCP.TopoDS import TopoDS_Edge
@@ -44,6 +44,9 @@ def edge_curve(edge: TopoDS_Edge) -> Geom_BSplineCurve:
 
 def _spline(adaptor: BRepAdaptor_Curve, edge: TopoDS_Edge) -> Geom_BSplineCurve:
     first, last = adaptor.FirstParameter(), adaptor.LastParameter()
+    if adaptor.GetType() == GeomAbs_OffsetCurve:
+        # The kernel's own conversion leaves a curve that turns by hundredths of a millimetre.
+        return _followed(adaptor, "it is an offset curve, which no B-spline")
     if adaptor.Is3DCurve():
         curve = BRep_Tool.Curve_s(edge, first, last)
     elif adaptor.GetType() == GeomAbs_Line:
@@ -51,18 +54,21 @@ def _spline(adaptor: BRepAdaptor_Curve, edge: TopoDS_Edge) -> Geom_BSplineCurve:
     elif adaptor.GetType() == GeomAbs_Circle:
         curve = Geom_Circle(adaptor.Circle())
     else:
-        return _on_surface(adaptor)
+        return _followed(adaptor, "it has a curve on its surface only, which no curve in space")
     return GeomConvert.CurveToBSplineCurve_s(Geom_TrimmedCurve(curve, first, last))
 
 
-def _on_surface(adaptor: BRepAdaptor_Curve) -> Geom_BSplineCurve:
-    """Returns the curve of an edge that has one in the parameters of its surface only."""
+def _followed(adaptor: BRepAdaptor_Curve, what: str) -> Geom_BSplineCurve:
+    """Returns a B-spline along the curve of an edge that is none in space.
+
+    Raises:
+        CadError: none follows it closely enough; ``what`` begins the sentence.
+    """
     found = Approx_Curve3d(adaptor, settings.CONFUSION, GeomAbs_C1, PIECES_MAX, DEGREE_MAX)
     if not found.IsDone() or found.MaxError() > 10.0 * settings.CONFUSION:
         raise CadError(
             "take the curve of an edge",
-            "it has a curve on its surface only, which no curve in space follows to"
-            f" {10.0 * settings.CONFUSION:.0e} mm. Export it with a curve in space.",
+            f"{what} follows to {10.0 * settings.CONFUSION:.0e} mm. Export it as a B-spline.",
         )
     return found.Curve()
 

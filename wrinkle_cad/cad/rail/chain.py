@@ -102,6 +102,12 @@ def _check_finite(curves: Sequence[PoleCurve], name: str) -> None:
             raise InputError(
                 f"{name} has a curve with NaN or infinite poles. Pass finite geometry."
             )
+        reach = float(np.abs(curve.poles).max())
+        if reach > settings.LARGEST_COORDINATE:
+            raise InputError(
+                f"{name} reaches to {reach:.3g} mm, as a line without ends does, and at most"
+                f" {settings.LARGEST_COORDINATE:.3g} mm is allowed. Trim it to what is needed."
+            )
 
 
 def _check_once(curves: Sequence[PoleCurve], name: str) -> None:

@@ -33,6 +33,8 @@ PAIR_STEPS: Final = 100
 """Steps to the nearest places of two rails; where these touch three ways each is worth a third."""
 BEND_STEP: Final = 1e-3
 """The bend of an edge at its end is taken over this share of it ..."""
+ALONG: Final = 33
+"""Points of an open rail that are looked for on a closed one."""
 SAME_BEND: Final = 0.05
 """... and goes on in the next one if it differs by no more than this share."""
 
@@ -48,11 +50,26 @@ def are_closed(p: Directrix, q: Directrix) -> bool:
     if p.is_closed == q.is_closed:
         return p.is_closed
     closed, opened = (p, q) if p.is_closed else (q, p)
+    if _runs_along(opened, closed):
+        names = closed.name or "P", opened.name or "Q"
+        raise InputError(
+            f"Rail {names[0]} is closed, and P and Q coincide over {opened.length:.4g} mm: rail"
+            f" {names[0]} runs along the whole of rail {names[1]} and back, as an offset does that"
+            " was closed. Pass the other side alone, in build123d offset_2d(..., closed=False)."
+        )
     raise InputError(
         f"Rail {closed.name or 'P'} is closed, but the ends of rail {opened.name or 'Q'} are"
         f" {_ends_apart(opened):.4g} mm apart. Both must be closed, or both open: close the one, or"
         " cut the other."
     )
+
+
+def _runs_along(opened: Directrix, closed: Directrix) -> bool:
+    """Whether a closed rail passes all places of an open one."""
+    points = opened.point_at(np.linspace(*opened.interval, ALONG))
+    feet = [foot_on(point, closed) for point in points]
+    apart = row_lengths(closed.point_at(np.array(feet)) - points)
+    return bool(apart.max() <= settings.RAILS_APART_PER_LENGTH * opened.length)
 
 
 def _ends_apart(rail: Directrix) -> float:

@@ -55,6 +55,8 @@ def shapes_in(source: object, name: str) -> list[TopoDS_Shape]:
             raise InputError(f"{name} is an empty {type(source).__name__}. Pass one with a curve.")
         return [shape]
     held = _held_by(source)
+    if held == () and held is not source:
+        raise InputError(f"{name} is an empty {type(source).__name__}. Draw a curve in it first.")
     if isinstance(held, Iterable) and not isinstance(held, str | bytes):
         return [shape for item in held for shape in shapes_in(item, name)]
     raise InputError(
@@ -69,8 +71,10 @@ def _held_by(source: object) -> Any:
         return _on_workplane(source)
     for attribute in ("line", "sketch"):  # build123d's BuildLine, BuildSketch
         made = getattr(source, attribute, None)
-        if hasattr(made, "wrapped") and getattr(made, "wrapped", None) is not None:
+        if getattr(made, "wrapped", None) is not None:
             return [made]
+        if type(source).__name__ in ("BuildLine", "BuildSketch") and hasattr(source, attribute):
+            return ()
     return source
 
 
