@@ -1,8 +1,7 @@
 """Points and derivatives of a B-spline curve at many parameters at once.
 
-De Boor's algorithm on homogeneous poles, each of its steps one array operation. The kernel
-evaluates one parameter per call, which costs a hundred times more from Python; importing a
-library for it costs a second.
+De Boor's algorithm on homogeneous poles, compiled. The kernel evaluates one parameter per call,
+which costs a hundred times more from Python; importing a library for it costs a second.
 """
 
 from __future__ import annotations
@@ -13,7 +12,10 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from wrinkle_cad.strip.compiled import compiled
+
 Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -95,11 +97,31 @@ def _de_boor(
     span = np.clip(np.searchsorted(sequence, parameters, side=side) - 1, degree, last)
     # A parameter at the very end belongs to the last span that has a length.
     span = np.minimum(span, np.searchsorted(sequence, sequence[-1], side="left") - 1)
-    column = [poles[span - degree + j] for j in range(degree + 1)]
-    for level in range(1, degree + 1):
-        for j in range(degree, level - 1, -1):
-            low = sequence[span - degree + j]
-            high = sequence[span + 1 + j - level]
-            share = ((parameters - low) / (high - low))[:, None]
-            column[j] = (1.0 - share) * column[j - 1] + share * column[j]
-    return np.asarray(column[degree], dtype=np.float64)
+    return _blended(
+        sequence,
+        np.ascontiguousarray(poles),
+        degree,
+        span.astype(np.int64),
+        np.ascontiguousarray(parameters, dtype=np.float64),
+    )
+
+
+@compiled
+def _blended(
+    sequence: Floats, poles: Floats, degree: int, spans: Ints, parameters: Floats
+) -> Floats:
+    """The triangle of de Boor for each parameter in its span."""
+    size = poles.shape[1]
+    found = np.empty((parameters.size, size))
+    column = np.empty((degree + 1, size))
+    for k in range(parameters.size):
+        span, at = spans[k], parameters[k]
+        column[:] = poles[span - degree : span + 1]
+        for level in range(1, degree + 1):
+            for j in range(degree, level - 1, -1):
+                low = sequence[span - degree + j]
+                share = (at - low) / (sequence[span + 1 + j - level] - low)
+                for axis in range(size):
+                    column[j, axis] = (1.0 - share) * column[j - 1, axis] + share * column[j, axis]
+        found[k] = column[degree]
+    return found
