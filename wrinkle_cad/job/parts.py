@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import asdict
+from dataclasses import asdict, replace
 from datetime import datetime
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -101,6 +101,22 @@ def strip_of(job: Job, p: object, q: object, name: str) -> WrinkleStrip:
         **values_of(job, StripSettings),
         **material_of(job, limits_of(job)),
     )
+
+
+def without_rail(job: Job, unused: tuple[float, float, float, float]) -> Job:
+    """Returns the job for a strip with fixed ends between what free ends left of its rails.
+
+    Args:
+        job: the settings.
+        unused: mm of P before and behind that strip, of Q before and behind it.
+    """
+    p, _, q, _ = unused
+    pinned = tuple((pin[0] - p, pin[1] - q) if len(pin) == 2 else pin for pin in job.pinned)
+    moved = ((a - p, b - p, c - q, d - q) for a, b, c, d in job.forbidden)
+    forbidden = tuple(
+        (max(a, 0.0), b, max(c, 0.0), d) for a, b, c, d in moved if b > 0.0 and d > 0.0
+    )
+    return replace(job, ends="fixed", give_up=None, pinned=pinned, forbidden=forbidden)
 
 
 def strip_name(job: Job, name: str) -> str:

@@ -18,7 +18,7 @@ from wrinkle_cad.wrinkle.triangulated_strip import TriangulatedStrip
 from wrinkle_cad.wrinkle.wrinkle_strip import WrinkleStrip
 
 from .job import Job
-from .parts import limits_of, material_of, rails_of, strip_name, strip_of
+from .parts import limits_of, material_of, rails_of, strip_name, strip_of, without_rail
 
 if TYPE_CHECKING:
     from wrinkle_cad.cad.exchange.choose import Chosen, StripInput
@@ -146,6 +146,8 @@ def wrinkle_upper(job: Job, chosen: Chosen) -> WrinkledUpper:
         _wrinkle_in(job, opening, given)
         for opening, given in zip(openings, chosen.strips, strict=True)
     ]
+    if job.waves is None and any(any(strip.triangulation.unused) for strip in strips):
+        openings, strips = _shortened(job, chosen, strips)
     stitched = stitch(openings, strips, tolerance=job.tolerance)
     return WrinkledUpper(
         chosen.upper,
@@ -155,6 +157,27 @@ def wrinkle_upper(job: Job, chosen: Chosen) -> WrinkledUpper:
         stitched,
         _waves_of(job),
     )
+
+
+def _shortened(
+    job: Job, chosen: Chosen, strips: Sequence[WrinkleStrip]
+) -> tuple[list[Opening], list[WrinkleStrip]]:
+    """Openings only as long as strips with free ends are, and the strips in them."""
+    from wrinkle_cad.cad.upper.carve import carve_shapes
+
+    assert chosen.upper is not None
+    upper = chosen.upper.shape
+    requests = [
+        _request(job, given, (strip.p, strip.q))
+        for strip, given in zip(strips, chosen.strips, strict=True)
+    ]
+    openings = carve_shapes(upper, requests, source=upper)
+    found = []
+    for opening, strip, given in zip(openings, strips, chosen.strips, strict=True):
+        rails = _profiles(job, opening, given, (strip.p, strip.q))
+        own = without_rail(job, strip.triangulation.unused)
+        found.append(strip_of(own, *rails, given.name).as_rest_of(strip))
+    return openings, found
 
 
 def tried_on_upper(
@@ -227,11 +250,14 @@ def _outside(openings: Sequence[Opening]) -> tuple[NDArray[np.float64], NDArray[
     return np.vstack([each.points for each in feet]), np.vstack([each.normals for each in feet])
 
 
-def _request(job: Job, given: StripInput) -> CarveRequest:
+def _request(
+    job: Job, given: StripInput, rails: tuple[object, object] | None = None
+) -> CarveRequest:
+    """What is to be carved: between the rails of the file, or others."""
     from wrinkle_cad.cad.upper.carve import carve_request
 
     return carve_request(
-        *rails_of(job, given),
+        *(rails_of(job, given) if rails is None else rails),
         margin=job.margin_asked,
         fade=job.fade,
         allow_split=job.allow_split,
@@ -240,14 +266,17 @@ def _request(job: Job, given: StripInput) -> CarveRequest:
     )
 
 
-def _profiles(job: Job, opening: Opening, given: StripInput) -> tuple[object, object]:
+def _profiles(
+    job: Job, opening: Opening, given: StripInput, rails: tuple[object, object] | None = None
+) -> tuple[object, object]:
+    """What the strip is made between: of the rails of the file, or of others."""
     if job.waves is None or job.height is None:
         if opening.request.margin == 0.0 and max(opening.distances) <= job.tolerance:
             # Rails that lie on the upper within the tolerance are the opening's own boundary.
             from wrinkle_cad.cad.upper.bands import side_curve
 
             return side_curve(opening.p_edges, "P"), side_curve(opening.q_edges, "Q")
-        return rails_of(job, given)
+        return rails_of(job, given) if rails is None else rails
     from wrinkle_cad.cad.upper.profiles import profile_curves
 
     return profile_curves(

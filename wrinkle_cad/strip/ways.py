@@ -280,3 +280,21 @@ def unused_lengths(task: Task, way: Way) -> tuple[float, float, float, float]:
         float(q_arcs[j]),
         float(q_arcs[-1] - q_arcs[j + q_steps]),
     )
+
+
+def unused_text(unused: tuple[float, float, float, float]) -> str:
+    """Says how much of the rails free ends left, and where; nothing if they left none.
+
+    Args:
+        unused: mm of P before and behind the strip, of Q before and behind it.
+
+    Example:
+        >>> unused_text((0.0, 6.25, 0.0, 1.5))
+        '6.25 mm at the end of P, 1.5 mm at the end of Q'
+    """
+    places = ("the start of P", "the end of P", "the start of Q", "the end of Q")
+    return ", ".join(
+        f"{length:.4g} mm at {place}"
+        for length, place in zip(unused, places, strict=True)
+        if length > 0.0
+    )

@@ -15,6 +15,7 @@ from wrinkle_cad.strip.curve.polyline import row_lengths
 from wrinkle_cad.strip.end_bridges import end_crossings
 from wrinkle_cad.strip.places import outstanding, place_text
 from wrinkle_cad.strip.triangulation import Triangulation
+from wrinkle_cad.strip.ways import unused_text
 
 if TYPE_CHECKING:
     from wrinkle_cad.strip.flat.unrolling import Unrolling
@@ -129,15 +130,10 @@ def unused_findings(name: str, unused: tuple[float, float, float, float]) -> tup
         name: of the strip.
         unused: mm of P before and behind it, of Q before and behind it.
     """
-    places = ("the start of P", "the end of P", "the start of Q", "the end of Q")
-    left = [
-        f"{length:.4g} mm at {place}"
-        for length, place in zip(unused, places, strict=True)
-        if length > 0.0
-    ]
+    left = unused_text(unused)
     if not left:
         return ()
-    message = f"{name} leaves {', '.join(left)}: its ends are free, and so it bends less."
+    message = f"{name} leaves {left}: its ends are free, and so it bends less."
     return (Finding("rail-unused", "info", message),)
 
 

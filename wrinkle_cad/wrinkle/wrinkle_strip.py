@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from copy import copy
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -107,6 +109,14 @@ class WrinkleStrip(TriangulatedStrip):
         from wrinkle_cad.report.strip_page import strip_in_notebook
 
         return strip_in_notebook(self)
+
+    def as_rest_of(self, longer: WrinkleStrip) -> WrinkleStrip:
+        """This strip, known to be what another one with free ends left of its rails."""
+        rest = copy(self)
+        unused = longer.triangulation.unused
+        rest.triangulation = replace(self.triangulation, unused=unused)
+        rest._noticed = (*self._noticed, *unused_findings(self.name, unused))
+        return rest
 
 
 def _orientation_findings(name: str) -> tuple[Finding, ...]:

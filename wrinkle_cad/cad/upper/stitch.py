@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
@@ -21,7 +22,9 @@ from wrinkle_cad.cad.rail.directrix import Directrix
 from wrinkle_cad.errors import CadError, InputError
 from wrinkle_cad.options.checking import check_numbers
 from wrinkle_cad.options.signature import knows_its_options
+from wrinkle_cad.strip.curve.polyline import row_lengths
 from wrinkle_cad.strip.portable import norm
+from wrinkle_cad.strip.ways import unused_text
 
 from .bands import Band, StripLike, band_name, check_beside, make_band
 from .border_check import compared_border
@@ -287,6 +290,7 @@ def _all_faces(
                 check_beside(samples, edges, "PQ"[i])
             else:
                 ends.append(_side_ends(edges, profile, "PQ"[i]))
+                _check_reach(strip, ends[-1], profile)
             band = make_band(opening, i, profile, samples, tolerance=tolerance, price=price)
             if band is not None:
                 band = replace(band, name=band_name(name, band.name))
@@ -314,6 +318,19 @@ def _side_ends(edges: Sequence[TopoDS_Edge], profile: Directrix, rail: str) -> F
             f" {settings.RAIL_OFF_UPPER:.3g} mm is allowed. Pass the profiles of this opening."
         )
     return ends
+
+
+def _check_reach(strip: StripLike, ends: Floats, profile: Directrix) -> None:
+    """Refuses a strip that left rail at an end of the opening."""
+    tips = profile.point_at(np.array(profile.interval))
+    unused = strip.triangulation.unused
+    shortest = min((left for left in unused if left > 0.0), default=math.inf)
+    if float(row_lengths(tips - ends).max()) > min(0.5 * shortest, settings.RAIL_OFF_UPPER):
+        raise InputError(
+            f"{strip.name} leaves {unused_text(unused)}, so it does not fill its opening. Leave its"
+            " ends fixed, or shorten the rails by so much before the upper is carved: in a script"
+            " carve(upper, strip.p, strip.q), and a strip with fixed ends between its p and q."
+        )
 
 
 def _stitched(
