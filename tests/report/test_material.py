@@ -3,13 +3,17 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Literal
 
+import build123d as b3d
 import pytest
 
+from wrinkle_cad import WrinkleStrip, settings
 from wrinkle_cad.errors import InputError
 from wrinkle_cad.report.judging import missed_limits
 from wrinkle_cad.report.limits import Limits
 from wrinkle_cad.report.material import find_material, packaged_materials, read_material
+from wrinkle_cad.report.verdict import judge
 
 LEATHER = """
 name = "calf leather"
@@ -117,3 +121,25 @@ def test_plywood_bends_to_the_radii_of_its_table(
         "bend_radius_across_grain_mm": radius if is_across else None,
     }
     assert (not missed_limits(given, limits, 0.0)) == (factor > 1.0)
+
+
+@pytest.mark.parametrize("inches", PLYWOOD)
+def test_a_strip_of_plywood_passes_at_the_radius_of_the_table_for_its_grain(inches: str) -> None:
+    board = find_material(f"Plywood_{inches}in")
+    limits = Limits().of(board)
+    across, along = (FEET * feet for feet in PLYWOOD[inches])
+
+    def passes(inner: float, grain: Literal["along", "across"]) -> bool | None:
+        radius = inner + settings.K_FACTOR * limits.thickness_mm
+        arc = b3d.Edge.make_circle(radius, start_angle=0, end_angle=20)
+        strip = WrinkleStrip(
+            arc, b3d.Pos(0, 0, 300) * arc, thickness=limits.thickness_mm, grain=grain
+        )
+        return judge([strip.trial_report.as_json() | {"trials": []}], limits).passed
+
+    # The strip bends along itself: its rulings lie along a grain that runs across it.
+    for grain, least in (("across", across), ("along", along)):
+        assert passes(1.002 * least, grain) is True
+        assert passes(0.998 * least, grain) is False
+    between = (across + along) / 2.0
+    assert (passes(between, "across"), passes(between, "along")) == (True, False)
