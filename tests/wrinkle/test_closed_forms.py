@@ -1,4 +1,4 @@
-"""Strain, share, radius and crease of strips whose surface is known, from their curves to the report."""
+"""Strain, share, radius and crease of strips whose surface is known, as their report has them."""
 
 from __future__ import annotations
 

@@ -47,6 +47,28 @@ def to_build123d(
     return result
 
 
+def material_on(source: object) -> tuple[str, float | None] | None:
+    """Returns the name of the material that a build123d object is made of, and its thickness in mm.
+
+    Args:
+        source: a shape, or a list of shapes, of which the first with a material counts. Anything
+            else has none.
+
+    Returns:
+        The name as ``bd_materials`` has it, and the middle of the thicknesses that it comes in,
+        None where that is not known; None without a material.
+    """
+    items = source if isinstance(source, Sequence) and not isinstance(source, str) else [source]
+    for item in items:
+        known = getattr(getattr(item, "material", None), "material", None)
+        if isinstance(name := getattr(known, "name", None), str):
+            ranged = getattr(known, "thickness", None)
+            ends = [getattr(ranged, end, None) for end in ("min", "max")]
+            numbers = [float(end) for end in ends if isinstance(end, int | float)]
+            return name, sum(numbers) / len(numbers) if numbers else None
+    return None
+
+
 def sketch_from_outline(outlines: Sequence[ArrayLike]) -> Sketch:
     """Returns a build123d sketch on XY, its faces looking up, with one face for each outline.
 

@@ -66,14 +66,32 @@ def find_material(name_or_file: str) -> Material:
     """
     if name_or_file.lower().endswith(".toml"):
         return read_material(Path(name_or_file))
-    for material in packaged_materials():
-        if material.name.casefold() == name_or_file.casefold():
-            return material
+    found = material_named(name_or_file, None)
+    if found in packaged_materials():
+        return found
     known = ", ".join(material.name for material in packaged_materials()[:_LISTED])
     raise InputError(
         f"There is no material {name_or_file!r}. Known are {known}; or give a file that ends in"
         " .toml."
     )
+
+
+def material_named(name: str, thickness_mm: float | None) -> Material:
+    """Returns a packaged material by its name, or one of which no more than its thickness is known.
+
+    Args:
+        name: in any case.
+        thickness_mm: of the sheet, where it is not a packaged one.
+
+    >>> material_named("Plywood_1-4in", None).smallest_bend_radius_mm
+    1524
+    >>> material_named("Slate", 6.0).smallest_bend_radius_mm is None
+    True
+    """
+    for material in packaged_materials():
+        if material.name.casefold() == name.casefold():
+            return material
+    return Material(name=name, thickness_mm=thickness_mm)
 
 
 @cache

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict
+from copy import copy
+from dataclasses import asdict, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
@@ -15,7 +16,7 @@ from wrinkle_cad.pattern.formats.svg import drawing_of
 from wrinkle_cad.pattern.piece.piece import PatternPiece
 
 from .limits import Limits, LimitSettings
-from .material import find_material
+from .material import Material, find_material
 from .page import write_page
 from .verdict import entries_of, judge
 from .versions import installed_versions
@@ -24,6 +25,9 @@ from .views import StripView
 if TYPE_CHECKING:
     from wrinkle_cad.wrinkle.cut_pattern import Pattern
     from wrinkle_cad.wrinkle.triangulated_strip import TriangulatedStrip
+    from wrinkle_cad.wrinkle.wrinkle_strip import WrinkleStrip
+
+    from .verdict import Verdict
 
 _MATRIX_BRIDGES: Final = 50_000_000
 """The page shows no validity matrix of more possible bridges: they alone would take 50 MB."""
@@ -50,7 +54,7 @@ def strip_view(strip: TriangulatedStrip, pieces: Sequence[PatternPiece]) -> Stri
 
 
 def write_strip_page(
-    path: Path, strip: TriangulatedStrip, pattern: Pattern, judging: Mapping[str, Any]
+    path: Path, strip: WrinkleStrip, pattern: Pattern, judging: Mapping[str, Any]
 ) -> None:
     """Writes the page of a strip that a script made.
 
@@ -58,13 +62,14 @@ def write_strip_page(
         path: the file; replaced as a whole.
         strip: the strip.
         pattern: whose pieces are shown.
-        judging: limits by name, and ``material``.
+        judging: limits by name, and ``material``, for which the strip's own stands.
 
     Raises:
         InputError: a limit or the material cannot be used.
         ExportError: the file cannot be written.
     """
-    limits = _limits(judging)
+    limits = _limits(judging, strip.material, "export_html()")
+    strip = _made_of(strip, limits)
     shown = {key: at.name if isinstance(at, Path) else at for key, at in judging.items()}
     entries = entries_of([strip.report], limits)
     summary = {
@@ -79,12 +84,39 @@ def write_strip_page(
     write_export(path, "HTML", page.encode("utf-8"))
 
 
-def _limits(judging: Mapping[str, Any]) -> Limits:
+def strip_verdict(strip: WrinkleStrip, judging: Mapping[str, Any]) -> Verdict:
+    """Judges a strip that a script made.
+
+    Args:
+        strip: the strip.
+        judging: limits by name, and ``material``, for which the strip's own stands.
+
+    Raises:
+        InputError: a limit or the material cannot be used.
+    """
+    limits = _limits(judging, strip.material, "verdict()")
+    strip = _made_of(strip, limits)
+    return judge(entries_of([strip.report], limits), limits)
+
+
+def _made_of(strip: WrinkleStrip, limits: Limits) -> WrinkleStrip:
+    """The strip, as thick as the material that it is judged by where nothing else was asked for."""
+    if not limits.thickness_mm or strip.stock.thickness:
+        return strip
+    twin = copy(strip)
+    k_factor = limits.k_factor or strip.stock.k_factor
+    twin.stock = replace(strip.stock, thickness=limits.thickness_mm, k_factor=k_factor)
+    vars(twin).pop("report", None)  # its inner radii are of a sheet without thickness
+    return twin
+
+
+def _limits(judging: Mapping[str, Any], own: Material | None, function: str) -> Limits:
     known = options_of(LimitSettings)
-    check_known(judging, [*known, "material"], "export_html()")
+    check_known(judging, [*known, "material"], function)
     limits = Limits(**{name: value for name, value in judging.items() if name in known})
-    material = judging.get("material")
-    return limits if material is None else limits.of(find_material(str(material)))
+    named = judging.get("material")
+    material = own if named is None else find_material(str(named))
+    return limits if material is None else limits.of(material)
 
 
 def strip_in_notebook(strip: TriangulatedStrip) -> str:

@@ -39,6 +39,8 @@ class Stock:
     """Of the material, the side that the surface is; inside: the material lies where
     ``p' x (q - p)`` points. A surface in the middle is where lengths are kept: the neutral layer.
     """
+    name: str = ""
+    """Of the material; empty where nothing is known."""
 
 
 def inner_radii(

@@ -347,6 +347,7 @@ class TriangulatedStrip(MappedStrip):
             k_factor=self.stock.k_factor,
             grain=self.stock.grain,
             surface_side=self.stock.surface_side,
+            material=self.stock.name,
         )
         return pattern_of_strips([self], replace(base, **options))
 

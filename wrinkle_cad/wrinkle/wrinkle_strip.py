@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from copy import copy
 from dataclasses import replace
 from pathlib import Path
@@ -21,6 +22,9 @@ from .strip_findings import unused_findings
 from .triangulated_strip import TriangulatedStrip
 
 if TYPE_CHECKING:
+    from wrinkle_cad.report.material import Material
+    from wrinkle_cad.report.verdict import Verdict
+
     from .cut_pattern import Pattern
 
 
@@ -67,6 +71,7 @@ class WrinkleStrip(TriangulatedStrip):
         check_distinct(given_p, given_q)
         p_rail, q_rail, was_turned = orient_alike(given_p, given_q)
         found = found_between(p_rail, q_rail, chosen)
+        self.material: Material | None = _material_of(p, q)
         super().__init__(
             *found.rails,
             *found.samples,
@@ -75,7 +80,7 @@ class WrinkleStrip(TriangulatedStrip):
             name=chosen.name,
             color=chosen.color,
             surface=chosen.surface,
-            stock=Stock(chosen.thickness, chosen.k_factor, chosen.grain, chosen.surface_side),
+            stock=_stock(chosen, options, self.material),
             findings=(
                 *given_p.findings,
                 *given_q.findings,
@@ -85,6 +90,26 @@ class WrinkleStrip(TriangulatedStrip):
             ),
             held=found.held,
         )
+
+    def verdict(self, **judging: Any) -> Verdict:
+        """Judges the strip: PASS or FAIL by limits and by those of its material, else its state.
+
+        Args:
+            judging: a ``material``, by name or as a file, and limits by their names in a job; where
+                no material is given that of P or Q counts, if build123d has one for it.
+
+        Raises:
+            InputError: a limit is unknown or out of its range.
+
+        Example:
+            >>> from build123d import Edge
+            >>> p, q = Edge.make_line((0, 0), (90, 0)), Edge.make_line((0, 20), (90, 30))
+            >>> WrinkleStrip(p, q).verdict(max_strain_percent=1).headline
+            'PASS: gives 1%, needs 0%.'
+        """
+        from wrinkle_cad.report.strip_page import strip_verdict
+
+        return strip_verdict(self, judging)
 
     def export_html(
         self, path: str | Path, *, pattern: Pattern | None = None, **judging: Any
@@ -117,6 +142,29 @@ class WrinkleStrip(TriangulatedStrip):
         rest.triangulation = replace(self.triangulation, unused=unused)
         rest._noticed = (*self._noticed, *unused_findings(self.name, unused))
         return rest
+
+
+def _material_of(p: object, q: object) -> Material | None:
+    """What build123d says that a rail is made of."""
+    from wrinkle_cad.cad.build123d_objects import material_on
+
+    named = material_on(p) or material_on(q)
+    if named is None:
+        return None
+    from wrinkle_cad.report.material import material_named
+
+    return material_named(*named)
+
+
+def _stock(chosen: StripArguments, given: Mapping[str, Any], material: Material | None) -> Stock:
+    """What a strip is cut from: as it was asked for, and else as its material is."""
+    thickness, k_factor = chosen.thickness, chosen.k_factor
+    if material is not None and "thickness" not in given:
+        thickness = material.thickness_mm or thickness
+    if material is not None and "k_factor" not in given:
+        k_factor = material.k_factor or k_factor
+    name = "" if material is None else material.name
+    return Stock(thickness, k_factor, chosen.grain, chosen.surface_side, name)
 
 
 def _orientation_findings(name: str) -> tuple[Finding, ...]:
