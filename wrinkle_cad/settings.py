@@ -110,6 +110,8 @@ Unit = Literal["mm", "cm", "m", "inch", "ft"]
 """Units of length that a file may have."""
 WaveSide = Literal["out", "in", "both"]
 """The side of an upper on which waves stand."""
+WaveKind = Literal["sine", "pleat", "gather"]
+"""Even waves, rounded folds that overhang, or such folds of uneven width and height."""
 
 CRITERIA: Final[tuple[Criterion, ...]] = ("invalid", "bending")
 """GODT+GMBT: as many locally convex bridges as possible, then least bending."""

@@ -229,7 +229,8 @@ def _opens_alike(request: CarveRequest, other: CarveRequest) -> bool:
 
 
 def _waves_of(job: Job) -> tuple[object, ...]:
-    return (job.waves, job.height, job.phase_deg, job.fade, job.side)
+    drawn = (job.waves, job.height, job.phase_deg, job.fade, job.side)
+    return (*drawn, job.shape, job.lean_deg, job.seed, job.amplitude)
 
 
 def _wrinkle_in(job: Job, opening: Opening, given: StripInput) -> WrinkleStrip:
@@ -286,6 +287,10 @@ def _profiles(
         phase_deg=job.phase_deg,
         fade=job.fade,
         side=job.side,
+        shape=job.shape,
+        lean_deg=job.lean_deg,
+        seed=job.seed,
+        amplitude=job.amplitude,
     )
 
 

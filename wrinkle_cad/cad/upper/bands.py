@@ -271,7 +271,10 @@ def _check_folds(triangulation: Triangulation, opening: Opening, i: int, width: 
 
 
 def _overhang(triangulation: Triangulation, opening: Opening, i: int) -> float:
-    """Returns the share of a band's area that faces against the upper's normal nearby."""
+    """Returns the share of a band's area that faces against the upper's normal nearby.
+
+    Below a fold of the profile that overhangs, where it runs back along its rail, a band has to.
+    """
     rail, first = opening.rails[i], opening.rails[0]
     facing_of_strip = np.cross(first.tangents, opening.across[0]) * first.feet.normals
     corners = np.vstack((triangulation.p, triangulation.q))[triangulation.triangles]
@@ -280,4 +283,14 @@ def _overhang(triangulation: Triangulation, opening: Opening, i: int) -> float:
     nearest = np.linalg.norm(middles[:, None] - rail.points[None], axis=2).argmin(axis=1)
     facing = (areas * rail.feet.normals[nearest]).sum(axis=1) * np.sign(facing_of_strip.sum())
     sizes = np.linalg.norm(areas, axis=1)
-    return float(sizes[facing < 0.0].sum() / sizes.sum())
+    is_against = (facing < 0.0) & ~_below_overhangs(triangulation, rail.tangents[nearest], i)
+    return float(sizes[is_against].sum() / sizes.sum())
+
+
+def _below_overhangs(triangulation: Triangulation, tangents: Floats, i: int) -> NDArray[np.bool_]:
+    """Returns (t,) bool: triangles on a chord of the profile that runs against (t, 3) tangents."""
+    is_on_q = triangulation.triangles >= len(triangulation.p)
+    on_profile = np.sort(np.where(is_on_q == (i == 0), triangulation.triangles, -1), axis=1)
+    corners = np.vstack((triangulation.p, triangulation.q))[on_profile[:, 1:]]
+    along = ((corners[:, 1] - corners[:, 0]) * tangents).sum(axis=1)
+    return np.asarray((on_profile[:, 1] >= 0) & (along < 0.0))

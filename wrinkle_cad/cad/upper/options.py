@@ -48,6 +48,31 @@ class WaveSettings:
     side: settings.WaveSide = field(
         default=settings.WAVE_SIDE, metadata=option("the side of the upper that the waves stand on")
     )
+    shape: settings.WaveKind = field(
+        default="sine",
+        metadata=option(
+            "even waves, rounded folds that overhang, or such folds of uneven width and height"
+        ),
+    )
+    lean_deg: float = field(
+        default=0.0,
+        metadata=option(
+            "how far the waves lean over, along the rails", unit="deg", least=-75.0, most=75.0
+        ),
+    )
+    seed: int = field(
+        default=0,
+        metadata=option("of what is uneven in gathered folds", least=0, most=2**31, metavar="N"),
+    )
+    amplitude: tuple[float, ...] = field(
+        default=(),
+        metadata=option(
+            "shares of the height at even distances along the rails",
+            least=-10.0,
+            most=10.0,
+            metavar="N,N",
+        ),
+    )
     margin: float | None = field(
         default=None,
         metadata=option(

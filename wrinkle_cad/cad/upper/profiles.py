@@ -7,8 +7,8 @@ by a wave of the arc length that fades out at both ends.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
-from typing import TYPE_CHECKING, Any, get_args
+from collections.abc import Callable, Sequence
+from typing import TYPE_CHECKING, Any, Final, get_args
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,11 +18,11 @@ from wrinkle_cad.cad.rail.directrix import Directrix, make_directrix
 from wrinkle_cad.errors import InputError
 from wrinkle_cad.options.checking import check_numbers
 from wrinkle_cad.options.signature import knows_its_options
-from wrinkle_cad.strip.portable import cos, sin
 
 from .opening import Opening
 from .opening_outline import Rail
 from .smooth import curve_edges, smooth_edge
+from .wave_shapes import frame_at, waves_along
 
 if TYPE_CHECKING:
     from build123d import Edge
@@ -32,6 +32,8 @@ Wave = Callable[[Floats], Floats]
 """(k,) arc lengths in mm from the rail's start -> (k,) offsets in mm."""
 Pair = float | tuple[float, float]
 Shift = float | Wave | tuple[float | Wave, float | Wave]
+Amplitude = Wave | Sequence[float]
+_MOST_LEAN_DEG: Final = 75.0
 
 
 @knows_its_options
@@ -44,6 +46,10 @@ def wrinkle_profiles(
     fade: float = settings.FADE,
     side: settings.WaveSide = settings.WAVE_SIDE,
     across: Shift = 0.0,
+    shape: settings.WaveKind = "sine",
+    lean_deg: float = 0.0,
+    seed: int = 0,
+    amplitude: Amplitude = (),
 ) -> tuple[Edge, Edge]:
     """Designs the two profiles of a wrinkle over an opening.
 
@@ -61,6 +67,12 @@ def wrinkle_profiles(
             ``both``: to either side of it.
         across: mm, in the same wave, along the upper and towards the other rail; or a callable, as
             for ``height``.
+        shape: ``sine``; ``pleat``: rounded folds that overhang without touching; ``gather``: such
+            folds of uneven width and height, as in gathered leather.
+        lean_deg: deg, -75 to 75; how far the waves lean over, forward along the rail.
+        seed: of what is uneven in ``gather``; the same on P and Q.
+        amplitude: shares of the height, at even distances along the rail; or a callable of (k,) arc
+            lengths in mm that returns (k,) shares. The height everywhere when empty.
 
     Returns:
         Two build123d edges, each one B-spline, P and Q.
@@ -89,6 +101,10 @@ def wrinkle_profiles(
         fade=fade,
         side=side,
         across=across,
+        shape=shape,
+        lean_deg=lean_deg,
+        seed=seed,
+        amplitude=amplitude,
     )
     return to_build123d(curve_edges(p)[0], label="P"), to_build123d(curve_edges(q)[0], label="Q")
 
@@ -102,29 +118,35 @@ def profile_curves(
     fade: float = settings.FADE,
     side: settings.WaveSide = settings.WAVE_SIDE,
     across: Shift = 0.0,
+    shape: settings.WaveKind = "sine",
+    lean_deg: float = 0.0,
+    seed: int = 0,
+    amplitude: Amplitude = (),
 ) -> tuple[Directrix, Directrix]:
     """Returns the profiles of ``wrinkle_profiles`` as directrices."""
     if not isinstance(opening, Opening):
         raise InputError(
             f"The opening cannot be a {type(opening).__name__}: pass what carve() returned."
         )
-    check_numbers(waves=waves, height=height, phase_deg=phase_deg, fade=fade, across=across)
+    check_numbers(
+        waves=waves, height=height, phase_deg=phase_deg, fade=fade, across=across, lean_deg=lean_deg
+    )
+    _check_shape(shape, lean_deg, height)
     if not settings.FADE_MIN <= fade <= 0.5:
         raise InputError(f"fade is {fade:g}: {settings.FADE_MIN:g} to 0.5 is allowed.")
     if side not in get_args(settings.WaveSide):
         raise InputError(f"side is {side!r}. Choose {', '.join(get_args(settings.WaveSide))}.")
     made = []
     for i, (rail, name) in enumerate(zip(opening.rails, "PQ", strict=True)):
-        shape = _wave_shape(
-            rail, _one(waves, i), math.radians(_one(phase_deg, i)), fade, side, name
-        )
-        outward = _offset(rail, _one(height, i), shape, "height")
-        sideways = _offset(rail, _one(across, i), shape, "across")
-        points = (
-            rail.points
-            + outward[:, None] * rail.feet.normals
-            + sideways[:, None] * opening.across[i]
-        )
+        count, phase = _one(waves, i), math.radians(_one(phase_deg, i))
+        _check_waves(rail, count, phase, name)
+        drawn = waves_along(rail, shape, count, phase, fade=fade, side=side, seed=seed)
+        heights = drawn.heights * _amplitude(rail, drawn.turns, amplitude)
+        outward = _offset(rail, _one(height, i), heights, "height")
+        sideways = _offset(rail, _one(across, i), heights, "across")
+        shares = drawn.shares + math.tan(math.radians(lean_deg)) * outward / rail.length
+        frame = frame_at(rail, opening.across[i], shares)
+        points = frame.points + outward[:, None] * frame.normals + sideways[:, None] * frame.across
         if rail.is_ring:
             points[-1] = points[0]
         made.append(make_directrix(smooth_edge(points), name=name))
@@ -135,10 +157,21 @@ def _one(value: Any, i: int) -> Any:
     return value[i] if isinstance(value, tuple) else value
 
 
-def _wave_shape(
-    rail: Rail, waves: float, phase: float, fade: float, side: settings.WaveSide, name: str
-) -> Floats:
-    """Returns (k,) the wave of height 1 at the points of a rail."""
+def _check_shape(shape: str, lean_deg: float, heights: Shift) -> None:
+    if shape not in get_args(settings.WaveKind):
+        raise InputError(f"shape is {shape!r}. Choose {', '.join(get_args(settings.WaveKind))}.")
+    if not -_MOST_LEAN_DEG <= lean_deg <= _MOST_LEAN_DEG:
+        raise InputError(
+            f"lean_deg is {lean_deg:g}: {-_MOST_LEAN_DEG:g} to {_MOST_LEAN_DEG:g} is allowed."
+        )
+    if shape != "sine" and any(callable(_one(heights, i)) for i in range(2)):
+        raise InputError(
+            f"The height is a callable, which draws the waves itself, and shape is {shape}. Give"
+            " a height in mm, or leave the shape out."
+        )
+
+
+def _check_waves(rail: Rail, waves: float, phase: float, name: str) -> None:
     most = settings.WAVES_PER_POINT * len(rail.points)
     if not 0.0 < waves <= most:
         raise InputError(
@@ -151,25 +184,33 @@ def _wave_shape(
             f"waves is {waves:g} on {name}, which is closed: a whole number of waves is needed"
             " there."
         )
-    angle = 2.0 * np.pi * waves * rail.shares + phase
-    near = np.minimum(rail.shares, 1.0 - rail.shares)
-    # A squared sine: at the ends it grows slower than the margin, so the band does not stand up.
-    envelope = sin(0.5 * np.pi * np.clip(near / fade, 0.0, 1.0)) ** 2
+
+
+def _amplitude(rail: Rail, shares: Floats, amplitude: Amplitude) -> Floats:
+    """Returns (k,) the shares of the height at (k,) places along a rail."""
+    if callable(amplitude):
+        return _offset(rail, amplitude, shares, "amplitude", arc=shares * rail.length)
+    given = np.asarray(amplitude, dtype=np.float64)
+    if given.ndim != 1 or not np.isfinite(given).all():
+        raise InputError(
+            f"amplitude has the shape {given.shape}. Give finite shares of the height in a row."
+        )
+    if not len(given):
+        return np.ones(len(shares))
     if rail.is_ring:
-        envelope = np.ones(len(near))
-    if side == "both":
-        return np.asarray(envelope * sin(angle))
-    sign = 1.0 if side == "out" else -1.0
-    return np.asarray(sign * envelope * 0.5 * (1.0 - cos(angle)))
+        given = np.append(given, given[0])
+    return np.interp(shares, np.linspace(0.0, 1.0, len(given)), given)
 
 
-def _offset(rail: Rail, amount: float | Wave, shape: Floats, name: str) -> Floats:
+def _offset(
+    rail: Rail, amount: float | Wave, shape: Floats, name: str, *, arc: Floats | None = None
+) -> Floats:
     """Returns (k,) mm: how far the points of a rail move."""
     if not callable(amount):
         if not np.isfinite(amount):
             raise InputError(f"{name} is {amount} mm. Give a finite height.")
         return amount * shape
-    arc = rail.shares * rail.length
+    arc = rail.shares * rail.length if arc is None else arc
     offset = np.asarray(amount(arc), dtype=np.float64)
     if offset.shape != arc.shape or not np.isfinite(offset).all():
         raise InputError(
