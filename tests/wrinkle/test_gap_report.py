@@ -9,10 +9,10 @@ import pytest
 from build123d import Edge, Line, Pos, Spline
 
 from tests.strip.rulings.rails import Rails, bumps, helicoid, twisted
+from wrinkle_cad.cad.faces.exact_surface import rail_curve
 from wrinkle_cad.strip.rulings.cures import cure_of
 from wrinkle_cad.strip.rulings.gaps import gaps_of
 from wrinkle_cad.strip.rulings.rail_curve import RailCurve
-from wrinkle_cad.wrinkle.exact_surface import rail_curve
 from wrinkle_cad.wrinkle.triangulated_strip import TriangulatedStrip
 from wrinkle_cad.wrinkle.wrinkle_strip import WrinkleStrip
 

@@ -1,14 +1,15 @@
 from __future__ import annotations
 
 import math
+from pathlib import Path
 
 import build123d as b3d
 import numpy as np
 import pytest
 
 from tests.cad.faces.test_smooth_shell import arc, auger_rail
-from tests.cad.strips import lens_edges
-from wrinkle_cad import WrinkleStrip
+from tests.cad.strips import faults_after_step, lens_edges
+from wrinkle_cad import WrinkleStrip, carve, stitch, wrinkle_profiles
 from wrinkle_cad.cad.kernel.topology import faces_of
 
 pytestmark = pytest.mark.filterwarnings("ignore::wrinkle_cad.WrinkleWarning")
@@ -56,15 +57,45 @@ def test_rails_of_points_are_joined_by_cones_and_that_is_said() -> None:
     assert strip.unrolling.area == pytest.approx(strip.area_mm2, rel=1e-6)
 
 
-def test_closed_rails_are_joined_by_cones_and_that_is_said() -> None:
+def test_a_duct_between_two_circles_is_two_smooth_faces(tmp_path: Path) -> None:
     strip = WrinkleStrip(
         b3d.Edge.make_circle(50), b3d.Pos(0, 0, 60) * b3d.Edge.make_circle(50), surface="smooth"
     )
-    assert "not-smooth" in codes(strip)
-    assert strip.area_mm2 == pytest.approx(2.0 * math.pi * 50.0 * 60.0, rel=1e-5)
+    shell = strip.topods_shell()
+    assert len(faces_of(shell)) == 2
+    assert faults_after_step(shell, tmp_path / "duct.step", tolerance=1e-5) == []
+    assert strip.area_mm2 == pytest.approx(2.0 * math.pi * 50.0 * 60.0, rel=1e-8)
+    assert strip.unrolling.area == pytest.approx(strip.area_mm2, rel=1e-8)
+    assert "not-smooth" not in codes(strip)
+
+
+def test_a_closed_reducer_has_a_few_faces_whose_pattern_closes(tmp_path: Path) -> None:
+    top = b3d.Pos(10, 5, 80) * b3d.Rot(7, 15, 0) * b3d.Edge.make_circle(30)
+    strip = WrinkleStrip(b3d.Edge.make_circle(50), top, surface="smooth")
+    shell, flat = strip.topods_shell(), strip.unrolling
+    assert len(faces_of(shell)) <= 4
+    assert faults_after_step(shell, tmp_path / "reducer.step", tolerance=1e-5) == []
+    assert flat.area == pytest.approx(strip.area_mm2, rel=1e-6)
+    seams = [np.linalg.norm(flat.p[at] - flat.q[at]) for at in (0, -1)]
+    assert seams[0] == pytest.approx(seams[1], abs=1e-9)
 
 
 def test_a_strip_without_a_smooth_piece_is_that_of_the_search() -> None:
     strip = WrinkleStrip(arc(50.0), b3d.Vertex(10, 5, 80), surface="smooth")
     assert codes(strip) & {"not-smooth", "rulings-cross"} == set()
     assert len(faces_of(strip.topods_shell())) == 1
+
+
+def test_a_smooth_wrinkle_is_stitched_in_with_smooth_bands(tmp_path: Path) -> None:
+    upper = b3d.Face.make_rect(100, 60)
+    rails = b3d.Edge.make_line((-40, -8), (40, -8)), b3d.Edge.make_line((-40, 8), (40, 8))
+    opening = carve(upper, *rails, margin=2)
+    counts = {}
+    for surface in ("cones", "smooth"):
+        profiles = wrinkle_profiles(opening, waves=3, height=2)
+        stitched = stitch(opening, WrinkleStrip(*profiles, name="wrinkle", surface=surface))
+        assert stitched.report.is_valid
+        assert stitched.report.max_edge_tolerance_mm <= 1e-5
+        assert faults_after_step(stitched.shell_shape, tmp_path / "s.step", tolerance=1e-5) == []
+        counts[surface] = stitched.report.face_count
+    assert counts["smooth"] < 0.5 * counts["cones"]

@@ -307,6 +307,8 @@ def _bands(job: Job, bands: Iterable[Band]) -> tuple[TriangulatedStrip, ...]:
             name=band.name,
             role="band",
             color=settings.BAND_COLOR,
+            surface="cones" if band.smooth is None else "smooth",
+            smooth=band.smooth,
             stock=Stock(**material),
         )
         for band in bands

@@ -8,10 +8,9 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
+from wrinkle_cad.cad.faces.exact_surface import rail_curve
 from wrinkle_cad.errors import Finding, Severity
 from wrinkle_cad.strip.rulings.cut_difference import FlatRail, cut_difference
-
-from .exact_surface import rail_curve
 
 if TYPE_CHECKING:
     from wrinkle_cad.cad.rail.directrix import Directrix

@@ -12,6 +12,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from wrinkle_cad import settings
+from wrinkle_cad.cad.faces.exact_surface import exact_surface, rail_curve
+from wrinkle_cad.cad.faces.smooth_surface import SmoothSurface, smooth_surface
 from wrinkle_cad.errors import Finding
 from wrinkle_cad.options.checking import check_known
 from wrinkle_cad.options.signature import takes_options_of
@@ -26,12 +28,10 @@ from wrinkle_cad.strip.rulings.held import NOTHING_HELD, Held
 from wrinkle_cad.strip.triangulation import Triangulation, triangulate
 
 from .cut_report import CutReport, cut_findings, cut_report
-from .exact_surface import exact_surface, rail_curve
 from .gap_report import GapReport, gap_reports
 from .grain import Stock, inner_radii
 from .loudness import warn_of
 from .mapped_strip import MappedStrip
-from .smooth_surface import SmoothSurface, smooth_surface
 from .strip_findings import (
     FOLDED,
     area_findings,
@@ -73,6 +73,7 @@ class TriangulatedStrip(MappedStrip):
         name: label of the surface and of the pattern.
         color: of the surface, (red, green, blue) from 0 to 1.
         surface: ``cones``, ``smooth`` or ``facets``.
+        smooth: its smooth surface, if that was made before.
         role: ``strip``, or ``band`` between a strip and the body.
         stock: thickness, K-factor and grain of the material, and which side of it the surface is.
         findings: what was noticed while it was made.
@@ -91,6 +92,7 @@ class TriangulatedStrip(MappedStrip):
         name: str,
         color: tuple[float, float, float] = settings.STRIP_COLOR,
         surface: settings.Surface = settings.SURFACE,
+        smooth: SmoothSurface | None = None,
         role: Role = "strip",
         stock: Stock = _NO_STOCK,
         findings: tuple[Finding, ...] = (),
@@ -103,6 +105,7 @@ class TriangulatedStrip(MappedStrip):
         self.name = name
         self.color = color
         self.surface: settings.Surface = surface
+        self._made_smooth = smooth
         self.role: Role = role
         self.stock = stock
         self.held = held
@@ -168,7 +171,9 @@ class TriangulatedStrip(MappedStrip):
     @cached_property
     def _smooth(self) -> SmoothSurface:
         rails, samples = (self.p, self.q), (self.p_samples, self.q_samples)
-        found = smooth_surface(self.name, rails, samples, self.triangulation, self.ruled)
+        found = self._made_smooth or smooth_surface(
+            self.name, rails, samples, self.triangulation, self.ruled
+        )
         self._tell(found.findings)
         return found
 

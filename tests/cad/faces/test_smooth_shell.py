@@ -21,10 +21,10 @@ from tests.cad.strips import (
     strip_between,
 )
 from tests.seeds import seeds
+from wrinkle_cad.cad.faces.exact_surface import exact_surface, rail_curve
 from wrinkle_cad.cad.faces.smooth_shell import SmoothShell, build_smooth_shell
 from wrinkle_cad.cad.kernel.measures import length_of, tolerance_of
 from wrinkle_cad.cad.kernel.topology import faces_of, free_edges
-from wrinkle_cad.wrinkle.exact_surface import exact_surface, rail_curve
 
 EDGE_TOLERANCE = 1e-5
 """mm; what an edge of a smooth shell may be off its faces."""

@@ -19,7 +19,9 @@ from OCP.gp import gp_Pnt
 from OCP.TopoDS import TopoDS_Edge, TopoDS_Shell
 
 from wrinkle_cad import settings
+from wrinkle_cad.cad.faces.exact_surface import exact_surface
 from wrinkle_cad.cad.faces.shell import build_shell
+from wrinkle_cad.cad.faces.smooth_surface import SmoothSurface, smooth_surface
 from wrinkle_cad.cad.kernel.curves import edge_ends
 from wrinkle_cad.cad.rail.closed_cut import cut_open, without_end
 from wrinkle_cad.cad.rail.directrix import Directrix, make_directrix, sample_directrix
@@ -49,6 +51,10 @@ class StripLike(SampledStrip, Protocol):
     def q(self) -> Directrix:
         """The profile along the opening's Q side."""
 
+    @property
+    def surface(self) -> settings.Surface:
+        """What its faces are."""
+
     def topods_shell(self) -> TopoDS_Shell:
         """Returns its surface."""
 
@@ -73,6 +79,8 @@ class Band:
     """The band, as faces."""
     width: float
     """mm; the largest distance between boundary and profile."""
+    smooth: SmoothSurface | None = None
+    """Its smooth surface, if that was asked for."""
 
 
 def side_curve(edges: Sequence[TopoDS_Edge], name: str) -> Directrix:
@@ -116,7 +124,13 @@ def bands_of(opening: Opening, strip: StripLike, tolerance: float) -> Iterator[B
         ((strip.p, strip.p_samples), (strip.q, strip.q_samples))
     ):
         band = make_band(
-            opening, i, profile, samples, tolerance=tolerance, price=strip.triangulation.price
+            opening,
+            i,
+            profile,
+            samples,
+            tolerance=tolerance,
+            price=strip.triangulation.price,
+            is_smooth=strip.surface == "smooth",
         )
         if band is not None:
             yield replace(band, name=band_name(strip.name, band.name))
@@ -130,6 +144,7 @@ def make_band(
     *,
     tolerance: float,
     price: float | None = None,
+    is_smooth: bool = False,
 ) -> Band | None:
     """Returns the band between one side of an opening and a profile, None if they coincide.
 
@@ -144,6 +159,7 @@ def make_band(
         tolerance: mm; chords of the side.
         price: of the wrinkle, for an invalid bridge more (triangulate); the default one when None:
             a band that folds to be more developable is of no use.
+        is_smooth: whether it is made of smooth pieces, like the wrinkle.
 
     Raises:
         InputError: the band has no width somewhere between its ends, or folds over.
@@ -159,8 +175,15 @@ def make_band(
         i, profile, samples, side, tolerance, settings.PRICE if price is None else price
     )
     _check_folds(triangulation, opening, i, width)
-    shell = build_shell(triangulation, *rails, *sampled, settings.SURFACE)
-    return Band(name, *rails, *sampled, triangulation, shell, width)
+    smooth = None
+    if is_smooth:
+        ruled = exact_surface(*rails, *sampled, triangulation)
+        smooth = smooth_surface(f"the band along {name}", rails, sampled, triangulation, ruled)
+    if smooth is not None and smooth.made is not None:
+        shell = smooth.made[0]
+    else:
+        shell = build_shell(triangulation, *rails, *sampled, settings.SURFACE)
+    return Band(name, *rails, *sampled, triangulation, shell, width, smooth)
 
 
 def _searched(

@@ -278,6 +278,7 @@ def _all_faces(
     parts, bands = [BODY] * len(faces), list[Band]()
     for opening, strip in zip(openings, strips, strict=True):
         name, price = strip.name, strip.triangulation.price
+        is_smooth = strip.surface == "smooth"
         pieces: list[tuple[str, Sequence[TopoDS_Face]]] = [(name, faces_of(strip.topods_shell()))]
         ends = []
         for i, (edges, profile, samples) in enumerate(
@@ -291,7 +292,9 @@ def _all_faces(
             else:
                 ends.append(_side_ends(edges, profile, "PQ"[i]))
                 _check_reach(strip, ends[-1], profile)
-            band = make_band(opening, i, profile, samples, tolerance=tolerance, price=price)
+            band = make_band(
+                opening, i, profile, samples, tolerance=tolerance, price=price, is_smooth=is_smooth
+            )
             if band is not None:
                 band = replace(band, name=band_name(name, band.name))
                 bands.append(band)

@@ -20,7 +20,7 @@ from wrinkle_cad.strip.rulings.rail_curve import RailCurve
 from wrinkle_cad.strip.rulings.smooth_path import PatchRun
 from wrinkle_cad.strip.triangulation import Triangulation
 
-from .ruled import FlatPiece, flat_rulings, lay_flat
+from .ruled import NO_PLACES, FlatPiece, flat_rulings, lay_flat
 
 Floats = NDArray[np.float64]
 Bools = NDArray[np.bool_]
@@ -212,11 +212,14 @@ def flat_map(
     step = 0
     while step < len(steps):
         if step in patches:
-            family, last = patches[step].family, patches[step].late
+            run = patches[step]
+            family, last, places = run.family, run.late, run.patch.jumps
         else:
-            family, last = _fan(rails, parameters, bridges[step], int(steps[step])), step + 1
+            family = _fan(rails, parameters, bridges[step], int(steps[step]))
+            last, places = step + 1, NO_PLACES
         i, j = bridges[step]
-        cells.append(FlatCell(family, lay_flat(family, np.stack((flat[0][i], flat[1][j])))))
+        start = np.stack((flat[0][i], flat[1][j]))
+        cells.append(FlatCell(family, lay_flat(family, start, places)))
         step = last
     size = float(np.ptp(np.vstack((triangulation.p, triangulation.q)), axis=0).max())
     return FlatMap(tuple(cells), size)

@@ -80,7 +80,7 @@ class _Laid:
             places_of(family, side, own[first[side] + 1 : last[side]])
             for side, own in enumerate(samples)
         ]
-        places = np.concatenate(inner)
+        places = np.concatenate((*inner, run.patch.jumps))
         start = np.zeros((2, 2))
         p, q = family.points_at(np.zeros(1))
         start[1, 1] = np.sqrt(((q - p) ** 2).sum())

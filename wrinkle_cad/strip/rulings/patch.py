@@ -57,6 +57,8 @@ class RuledPatch:
     """By the place, 0 to 1: (k, 6) mm; the ends of rulings on P and on Q."""
     ways: tuple[Quintic, Quintic]
     """By the parameter of P and of Q: (k, 1); the place of the ruling that ends there."""
+    jumps: Floats
+    """(k,) places where a rail's higher derivatives may jump."""
     error: float
     """mm; a bound of how far the rails' points, put on the patch by ``ways``, are from it."""
 
@@ -90,7 +92,7 @@ def patch_of(family: RulingFamily, p_knots: Floats, q_knots: Floats) -> RuledPat
     ways = [_way(family, side, rails, own[side], 2.0 * tolerance) for side in (0, 1)]
     if ways[0] is None or ways[1] is None:
         return None
-    return RuledPatch(rails, (ways[0], ways[1]), 3.0 * tolerance)
+    return RuledPatch(rails, (ways[0], ways[1]), np.concatenate(found), 3.0 * tolerance)
 
 
 def places_of(family: RulingFamily, side: int, parameters: Floats) -> Floats:

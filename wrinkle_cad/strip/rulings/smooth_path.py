@@ -100,9 +100,13 @@ def smooth_path(
         InputError: a gap cannot be triangulated.
     """
     draft = _Draft(rails, triangulation, samples)
+    is_closed = bool(
+        (triangulation.p[0] == triangulation.p[-1]).all()
+        and (triangulation.q[0] == triangulation.q[-1]).all()
+    )
     waiting: list[Piece] = []
     for number, piece in enumerate(ruled.pieces):
-        for part in _exact_parts(ruled, piece):
+        for part in _exact_parts(ruled, piece, is_whole=len(ruled.pieces) == 1 and is_closed):
             found = (
                 [(part, None, None)] if number in without else _patches(ruled, part, *rails, knots)
             )
@@ -134,10 +138,21 @@ def _stands_still(ruled: RuledStrip, piece: Piece) -> bool:
     return a == c or b == d
 
 
-def _exact_parts(ruled: RuledStrip, piece: Piece) -> list[Piece]:
-    """A torsal piece as parts with exact rulings, and gaps between where they twist a little."""
+def _exact_parts(ruled: RuledStrip, piece: Piece, *, is_whole: bool) -> list[Piece]:
+    """A torsal piece as parts with exact rulings, and gaps between where they twist a little.
+
+    What is the whole of a closed strip is two parts: a face does not border on itself.
+    """
     if piece.kind != "torsal":
         return [piece]
+    if is_whole:
+        middle = (piece.first + piece.last) // 2
+        halves = ((piece.first, middle), (middle, piece.last))
+        return [
+            part
+            for ends in halves
+            for part in _exact_parts(ruled, Piece("torsal", *ends, None), is_whole=False)
+        ]
     twist = np.abs(ruled.sheet.twist[piece.first : piece.last]).max(axis=1)
     is_exact = twist <= EXACT
     for first, last in _runs(~is_exact):

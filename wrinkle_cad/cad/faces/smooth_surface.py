@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from wrinkle_cad.errors import CadError, Finding, InputError
 
-from .exact_surface import rail_curve
+from .exact_surface import rail_curve, surface_from_cut
 
 if TYPE_CHECKING:
     from OCP.TopoDS import TopoDS_Shell
@@ -45,11 +45,13 @@ def smooth_surface(
         triangulation: of these samples.
         ruled: its exact surface.
     """
-    from wrinkle_cad.cad.faces.smooth_shell import build_smooth_shell
+    from .smooth_shell import build_smooth_shell
 
     reason = _hindrance(rails)
     if reason:
         return SmoothSurface(None, (_made_of_cones(name, reason),))
+    if all(rail.is_closed for rail in rails):
+        ruled = surface_from_cut(*rails, *samples, triangulation)
     curves = (rail_curve(rails[0]), rail_curve(rails[1]))
     try:
         made = build_smooth_shell(ruled, curves, triangulation, rails, samples)
@@ -64,8 +66,6 @@ def _hindrance(rails: tuple[Directrix, Directrix]) -> str:
     """Why a strip between two rails has no smooth surface; empty if it has."""
     if any(rail.is_polyline for rail in rails):
         return "a rail is given as points, between which it is straight"
-    if all(rail.is_closed for rail in rails):
-        return "a strip between closed rails cannot be made of smooth pieces yet"
     return ""
 
 

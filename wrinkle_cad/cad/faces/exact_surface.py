@@ -34,6 +34,40 @@ def exact_surface(
         triangulation: of these samples.
         held: what was asked of the rulings, in parameters of the directrices.
     """
+    is_closed = p.is_closed and q.is_closed
+    return _ruled(p, q, p_samples, q_samples, triangulation, is_closed=is_closed)
+
+
+def surface_from_cut(
+    p: Directrix,
+    q: Directrix,
+    p_samples: Samples,
+    q_samples: Samples,
+    triangulation: Triangulation,
+) -> RuledStrip:
+    """Returns the surface of a strip from its first bridge to its last, though it may be closed.
+
+    That bridge, where a closed strip is cut, then counts as a ruling, if only nearly one.
+
+    Args:
+        p: as for ``exact_surface``, and so all others.
+        q: likewise.
+        p_samples: likewise.
+        q_samples: likewise.
+        triangulation: likewise.
+    """
+    return _ruled(p, q, p_samples, q_samples, triangulation, is_closed=False)
+
+
+def _ruled(
+    p: Directrix,
+    q: Directrix,
+    p_samples: Samples,
+    q_samples: Samples,
+    triangulation: Triangulation,
+    *,
+    is_closed: bool,
+) -> RuledStrip:
     rails = (rail_curve(p), rail_curve(q))
     counts = (len(triangulation.p), len(triangulation.q))
     at_p, at_q = (
@@ -43,7 +77,6 @@ def exact_surface(
         )
     )
     # A closed strip's triangulation is cut open; its rails start where it is cut.
-    is_closed = p.is_closed and q.is_closed
     rule = rule_closed_strip if is_closed else rule_strip
     return rule(*rails, (at_p, at_q), triangulation.max_lean, held)
 
