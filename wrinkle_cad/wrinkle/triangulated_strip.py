@@ -172,7 +172,7 @@ class TriangulatedStrip(MappedStrip):
     def _smooth(self) -> SmoothSurface:
         rails, samples = (self.p, self.q), (self.p_samples, self.q_samples)
         found = self._made_smooth or smooth_surface(
-            self.name, rails, samples, self.triangulation, self.ruled
+            self.name, rails, samples, self.triangulation, self.ruled, self.held
         )
         self._tell(found.findings)
         return found

@@ -35,7 +35,7 @@ def exact_surface(
         held: what was asked of the rulings, in parameters of the directrices.
     """
     is_closed = p.is_closed and q.is_closed
-    return _ruled(p, q, p_samples, q_samples, triangulation, is_closed=is_closed)
+    return _ruled(p, q, p_samples, q_samples, triangulation, held, is_closed=is_closed)
 
 
 def surface_from_cut(
@@ -44,6 +44,7 @@ def surface_from_cut(
     p_samples: Samples,
     q_samples: Samples,
     triangulation: Triangulation,
+    held: Held = NOTHING_HELD,
 ) -> RuledStrip:
     """Returns the surface of a strip from its first bridge to its last, though it may be closed.
 
@@ -55,8 +56,9 @@ def surface_from_cut(
         p_samples: likewise.
         q_samples: likewise.
         triangulation: likewise.
+        held: likewise.
     """
-    return _ruled(p, q, p_samples, q_samples, triangulation, is_closed=False)
+    return _ruled(p, q, p_samples, q_samples, triangulation, held, is_closed=False)
 
 
 def _ruled(
@@ -65,6 +67,7 @@ def _ruled(
     p_samples: Samples,
     q_samples: Samples,
     triangulation: Triangulation,
+    held: Held,
     *,
     is_closed: bool,
 ) -> RuledStrip:

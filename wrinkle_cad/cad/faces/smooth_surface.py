@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from wrinkle_cad.errors import CadError, Finding, InputError
+from wrinkle_cad.strip.rulings.held import NOTHING_HELD, Held
 
 from .exact_surface import rail_curve, surface_from_cut
 
@@ -35,6 +36,7 @@ def smooth_surface(
     samples: tuple[Samples, Samples],
     triangulation: Triangulation,
     ruled: RuledStrip,
+    held: Held = NOTHING_HELD,
 ) -> SmoothSurface:
     """Returns the smooth surface of a strip.
 
@@ -44,6 +46,7 @@ def smooth_surface(
         samples: of P and of Q.
         triangulation: of these samples.
         ruled: its exact surface.
+        held: what was asked of its rulings.
     """
     from .smooth_shell import build_smooth_shell
 
@@ -51,7 +54,7 @@ def smooth_surface(
     if reason:
         return SmoothSurface(None, (_made_of_cones(name, reason),))
     if all(rail.is_closed for rail in rails):
-        ruled = surface_from_cut(*rails, *samples, triangulation)
+        ruled = surface_from_cut(*rails, *samples, triangulation, held)
     curves = (rail_curve(rails[0]), rail_curve(rails[1]))
     try:
         made = build_smooth_shell(ruled, curves, triangulation, rails, samples)
