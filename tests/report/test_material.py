@@ -123,7 +123,9 @@ def test_plywood_bends_to_the_radii_of_its_table(
     assert (not missed_limits(given, limits, 0.0)) == (factor > 1.0)
 
 
-@pytest.mark.parametrize("inches", PLYWOOD)
+@pytest.mark.parametrize(
+    "inches", ["1-4", *(pytest.param(each, marks=pytest.mark.slow) for each in list(PLYWOOD)[1:])]
+)
 def test_a_strip_of_plywood_passes_at_the_radius_of_the_table_for_its_grain(inches: str) -> None:
     board = find_material(f"Plywood_{inches}in")
     limits = Limits().of(board)

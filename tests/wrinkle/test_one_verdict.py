@@ -21,7 +21,7 @@ NEAR: Final = 0.1
 LIMITS: Final = Limits(max_strain_percent=1.0, min_radius_mm=2.0, max_twist_deg=10.0)
 
 
-def entries_of(seed: int) -> list[dict[str, Any]]:
+def entries_of(seed: int, tolerances: tuple[float, ...] = TOLERANCES) -> list[dict[str, Any]]:
     """The entry of one strip at each tolerance; strips of even seeds hardly twist."""
     rails = [
         b3d.Spline(*[tuple(at) for at in rail.point_at(np.linspace(*rail.interval, 41)).tolist()])
@@ -31,7 +31,7 @@ def entries_of(seed: int) -> list[dict[str, Any]]:
         warnings.simplefilter("ignore", WrinkleWarning)
         return [
             WrinkleStrip(*rails, tolerance=tolerance).trial_report.as_json() | {"trials": []}
-            for tolerance in TOLERANCES
+            for tolerance in tolerances
         ]
 
 
@@ -75,6 +75,6 @@ def test_sixty_strips_have_one_state_and_one_verdict_at_four_tolerances() -> Non
     assert np.median(spreads) <= 1.0
 
 
-@pytest.mark.parametrize("seed", range(4))
+@pytest.mark.parametrize("seed", [0, 5])
 def test_a_strip_has_one_state_and_one_verdict_at_two_tolerances(seed: int) -> None:
-    assert faults_of(entries_of(seed)) == []
+    assert faults_of(entries_of(seed, (0.1, 0.01))) == []

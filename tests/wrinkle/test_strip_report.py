@@ -81,6 +81,20 @@ def test_thickness_brings_the_inner_face_closer(small: float, radius: float) -> 
     assert report.inner_bend_radius_mm == pytest.approx(report.smallest_bend_radius_mm - 0.4 * 1.2)
 
 
+@pytest.mark.parametrize(("side", "inner"), [("inside", 40.0), ("middle", 39.2), ("outside", 38.0)])
+@pytest.mark.parametrize("is_swapped", [False, True])
+def test_the_inner_face_is_on_the_side_where_the_material_lies(
+    side: str, inner: float, is_swapped: bool
+) -> None:
+    arc = Edge.make_circle(40, start_angle=0, end_angle=100)
+    p, q = arc, Pos(0, 0, 20) * arc
+    # p' x (q - p) points away from the axis, where the material of a surface on the inside lies.
+    if is_swapped:
+        p, q, side = q, p, {"inside": "outside", "outside": "inside"}.get(side, side)
+    report = WrinkleStrip(p, q, thickness=2.0, k_factor=0.4, surface_side=side).trial_report
+    assert report.inner_bend_radius_mm == pytest.approx(inner, rel=0.002)
+
+
 def test_a_flat_strip_is_bent_nowhere() -> None:
     report = WrinkleStrip(Line((0, 0, 0), (80, 0, 0)), Line((0, 20, 0), (80, 30, 0))).report
     assert report.state == "developable"
