@@ -25,10 +25,10 @@ GAP_WINDOW_PER_WIDTH: Final = 0.125
 """... and in gaps, whose pairing makes no exact surface, over so much to either side, in shares of
 the ruling's length."""
 CORE: Final = 0.1
-"""Nearer its apex than this share of a ruling a cone is not judged. In a sheet of some thickness the
-tip of a cone is no point but a crescent with a size of its own (Chaieb and Melo, Crescent
-singularities and stress focusing in a developable cone, arXiv cond-mat/9806049; Cerda, Chaieb, Melo
-and Mahadevan, Nature 401, 46, 1999); the share itself is a convention."""
+"""Nearer its apex than this share of a ruling a cone is not judged. In a sheet of some thickness
+the tip of a cone is no point but a crescent with a size of its own (Chaieb and Melo, Crescent
+singularities and stress focusing in a developable cone, arXiv cond-mat/9806049; Cerda, Chaieb,
+Melo and Mahadevan, Nature 401, 46, 1999); the share itself is a convention."""
 
 
 def radius_along(sheet: Sheet, pieces: Sequence[Piece]) -> Floats:
