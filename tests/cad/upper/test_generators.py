@@ -52,3 +52,23 @@ def test_a_wrinkle_along_generators_is_stitched_and_its_bands_do_not_fold_over(
         )
         assert flat.turned_back_count == 0
     assert strip.unrolling.turned_back_count == 0
+
+
+@pytest.mark.parametrize("margin", [0.0, 4.0])
+@pytest.mark.parametrize("width", [10.0, 20.0, 40.0])
+def test_straight_rails_without_waves_are_stitched_with_any_margin(
+    width: float, margin: float
+) -> None:
+    # Their samples are their ends, where the bands have no width.
+    side = max(b3d.Solid.make_cylinder(RADIUS, HEIGHT).faces(), key=lambda face: face.area)
+    half = width / 2.0 / RADIUS
+    opening = carve(side, rail(math.pi - half), rail(math.pi + half), margin=margin)
+    strip = WrinkleStrip(opening.rail_p, opening.rail_q)
+    made = stitch(opening, strip)
+    assert strip.area_mm2 == pytest.approx(120.0 * 2.0 * RADIUS * math.sin(half), rel=1e-9)
+    assert made.report.is_valid
+    assert made.report.free_length_after_mm == pytest.approx(made.report.free_length_before_mm)
+    assert [band.name[-1] for band in made.report.bands] == (["P", "Q"] if margin else [])
+    for band in made.report.bands:
+        assert band.width == pytest.approx(margin, rel=0.05)
+        assert np.degrees(np.abs(band.triangulation.fold).max()) < 20.0

@@ -166,10 +166,13 @@ def make_band(
     """
     name = "PQ"[i]
     side = side_curve(opening.q_edges if i else opening.p_edges, f"opening along {name}")
-    width = float(distances_from(samples.points, side).max())
+    parameters = np.linspace(*profile.interval, settings.BAND_CHECKS)
+    gaps = distances_from(profile.point_at(parameters), side)
+    # The samples alone do not tell: a straight profile has them at its ends only.
+    width = float(max(gaps.max(), distances_from(samples.points, side).max()))
     if width <= settings.SEWN_DIRECTLY:
         return None
-    _check_open(profile, side, width, name)
+    _check_open(parameters, gaps, width, name)
     # The profile's samples are the wrinkle's too: only the side is sampled with regard to them.
     rails, sampled, triangulation = _searched(
         i, profile, samples, side, tolerance, settings.PRICE if price is None else price
@@ -255,13 +258,11 @@ def distances_from(points: Floats, side: Directrix) -> Floats:
     return gaps
 
 
-def _check_open(profile: Directrix, side: Directrix, width: float, name: str) -> None:
+def _check_open(parameters: Floats, gaps: Floats, width: float, name: str) -> None:
     """Checks that a band narrows to nothing at its two ends only.
 
     Near an end it narrows steadily; anywhere else the width has a minimum of its own.
     """
-    parameters = np.linspace(*profile.interval, settings.BAND_CHECKS)
-    gaps = distances_from(profile.point_at(parameters), side)
     inner = gaps[1:-1]
     is_least = (inner <= gaps[:-2]) & (inner <= gaps[2:])
     narrow = is_least & (inner < settings.BAND_NARROWEST * width)
