@@ -8,6 +8,10 @@ import numpy as np
 import pytest
 from build123d import Edge, Line, Polyline, Pos, Rectangle, Spline
 
+from tests.strip.rulings.rails import twisted
+from wrinkle_cad.batch.folder.delivery import figures_of
+from wrinkle_cad.report.limits import Limits
+from wrinkle_cad.report.verdict import judge
 from wrinkle_cad.wrinkle.wrinkle_strip import WrinkleStrip
 
 FOLD = [(0, 0, 0), (40, 0, 0), (70, 30, 0)]
@@ -126,3 +130,29 @@ def test_a_closed_frustum_is_judged_without_a_seam() -> None:
     report = WrinkleStrip(*rails).report
     assert (report.state, report.developable_share) == ("developable", 1.0)
     assert report.smallest_bend_radius_mm == pytest.approx(30 * math.hypot(80, 20) / 80, rel=0.01)
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_bridges_are_counted_one_way_everywhere(seed: int) -> None:
+    rails = [
+        Spline(*[tuple(at) for at in rail.point_at(np.linspace(*rail.interval, 41)).tolist()])
+        for rail in twisted(seed)
+    ]
+    strip = WrinkleStrip(*rails, name="vamp")
+    report = strip.trial_report
+    runs = [run.last - run.first + 1 for run in report.invalid_runs]
+    assert sum(runs) == report.invalid_bridges
+    assert report.inflection_bridges <= report.invalid_bridges
+    assert report.counted_invalid_bridges <= report.invalid_bridges
+    counts = f"{report.invalid_bridges} of {report.interior_bridges} bridges not locally convex"
+    assert counts in repr(strip)
+    entry = {**report.as_json(), "trials": []}
+    figures = figures_of({"strips": [entry]})
+    for name in ("interior_bridges", "invalid_bridges", "inflection_bridges"):
+        assert figures[name] == entry[name] == getattr(report, name)
+    # Lengths under them leave inflection rulings out, here and where a limit asks for them.
+    lengths = report.invalid_length_p_mm + report.invalid_length_q_mm
+    whole = sum(seam.space for seam in report.seam_lengths_mm.values())
+    assert judge([entry], Limits()).strips[0].invalid_percent == pytest.approx(
+        100.0 * lengths / whole
+    )

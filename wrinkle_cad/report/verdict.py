@@ -243,9 +243,8 @@ def _kept_words(entries: Sequence[Mapping[str, Any]], limits: Limits) -> str:
     if limits.min_radius_mm is not None and bent:
         parts.append(f"bends to {limits.min_radius_mm:g} mm, needs {figure(min(bent))} mm")
     kept = "; ".join(parts) or "every limit is kept"
-    others = [entry["cut"] for entry in entries if entry["cut"]["differs"]]
-    if others:
-        kept += f". But that is of another surface than the piece that is cut: {_worst_cut(others)}"
+    if any(entry["cut"]["differs"] for entry in entries):
+        kept += ". But the piece that is cut is another surface"
     return kept
 
 
