@@ -29,7 +29,10 @@ def inside(strip: WrinkleStrip, count: int, seed: int = 5) -> np.ndarray:
     return (1.0 - share) * strip.unrolling.p[i] + share * strip.unrolling.q[j]
 
 
-@pytest.mark.parametrize("surface", SURFACES)
+@pytest.mark.parametrize(
+    "surface",
+    [name if name == "smooth" else pytest.param(name, marks=pytest.mark.slow) for name in SURFACES],
+)
 def test_points_go_to_the_surface_and_back(surface: str) -> None:
     strip = lens(surface)
     points = inside(strip, 100)
@@ -53,6 +56,7 @@ def test_lengths_along_the_surface_are_kept_across_all_of_its_faces() -> None:
     assert length == pytest.approx(np.linalg.norm(end - start), rel=1e-5)
 
 
+@pytest.mark.slow
 def test_the_rails_lie_on_the_border_of_the_pattern() -> None:
     strip = WrinkleStrip(auger_rail(10.0), auger_rail(30.0), surface="smooth")
     flat = strip.unrolling
@@ -61,7 +65,7 @@ def test_the_rails_lie_on_the_border_of_the_pattern() -> None:
     np.testing.assert_allclose(strip.to_space(flat.q), strip.q_samples.points, atol=1e-7)
 
 
-@pytest.mark.parametrize("hand", [None, "left"])
+@pytest.mark.parametrize("hand", [pytest.param(None, marks=pytest.mark.slow), "left"])
 def test_what_is_drawn_on_a_piece_lands_where_the_piece_lies(hand: str | None) -> None:
     strip = lens()
     for piece in strip.pattern(seam_allowance=(6, 6, 6, 6), hand=hand, rulings=True).pieces:
@@ -74,6 +78,7 @@ def test_what_is_drawn_on_a_piece_lands_where_the_piece_lies(hand: str | None) -
             np.testing.assert_allclose(ruling[1], strip.triangulation.q[j], atol=1e-4)
 
 
+@pytest.mark.slow
 def test_holes_and_text_become_closed_outlines_on_the_surface() -> None:
     strip = lens()
     i, j = strip.triangulation.bridges[len(strip.triangulation.bridges) // 2]

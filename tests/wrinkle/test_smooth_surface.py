@@ -57,6 +57,7 @@ def test_rails_of_points_are_joined_by_cones_and_that_is_said() -> None:
     assert strip.unrolling.area == pytest.approx(strip.area_mm2, rel=1e-6)
 
 
+@pytest.mark.slow
 def test_a_duct_between_two_circles_is_two_smooth_faces(tmp_path: Path) -> None:
     strip = WrinkleStrip(
         b3d.Edge.make_circle(50), b3d.Pos(0, 0, 60) * b3d.Edge.make_circle(50), surface="smooth"
@@ -69,6 +70,7 @@ def test_a_duct_between_two_circles_is_two_smooth_faces(tmp_path: Path) -> None:
     assert "not-smooth" not in codes(strip)
 
 
+@pytest.mark.slow
 def test_a_closed_reducer_has_a_few_faces_whose_pattern_closes(tmp_path: Path) -> None:
     top = b3d.Pos(10, 5, 80) * b3d.Rot(7, 15, 0) * b3d.Edge.make_circle(30)
     strip = WrinkleStrip(b3d.Edge.make_circle(50), top, surface="smooth")

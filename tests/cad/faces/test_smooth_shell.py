@@ -106,6 +106,7 @@ def test_half_a_frustum_has_its_area() -> None:
     assert area_of(made.shell, relative_error=1e-9) == pytest.approx(wanted, rel=1e-8)
 
 
+@pytest.mark.slow
 def test_rails_that_meet_have_a_smooth_strip(tmp_path: Path) -> None:
     strip = strip_between(*lens_edges())
     made = smooth(strip)
