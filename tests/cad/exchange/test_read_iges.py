@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+import contextlib
+import random
 from pathlib import Path
 
 import pytest
 
+from tests.seeds import seeds
 from wrinkle_cad.cad.exchange.choose import Chosen, choose_inputs
 from wrinkle_cad.cad.exchange.read import read_cad
+from wrinkle_cad.errors import InputError
 
 from .iges_texts import Entity, iges_text, level_name, line, name_property
 
@@ -110,3 +114,80 @@ def test_all_faces_on_a_level_called_upper_are_the_upper(tmp_path: Path) -> None
     upper = chosen_in(tmp_path, entities).upper
     assert upper is not None
     assert (upper.kind, upper.measure) == ("compound", pytest.approx(300.0))
+
+
+RAILS = by_label(["Q", "P"])
+NURBS = "1.,1.,1.,1.,0.,0.,0.,9.,0.,0.,0.,1.,0.,0.,1."
+DAMAGED = {
+    "a pointer to nothing": (
+        [*RAILS, Entity(102, "2,1,901")],
+        "entity 102 at directory entry 5 points at 901, which the file does not have",
+    ),
+    "a count that its list does not have": (
+        [*RAILS, Entity(102, "9,1,3")],
+        "entity 102 at directory entry 5 has 3 numbers of 10",
+    ),
+    "too few numbers": (
+        [*RAILS, Entity(110, "0.,0.,0.,1.")],
+        "entity 110 at directory entry 5 has 4 numbers of 6",
+    ),
+    "a number beyond all sizes": (
+        [*RAILS, Entity(110, "0.,0.,0.,1.E300,0.,0.")],
+        r"entity 110 at directory entry 5 holds the number 1\.E300",
+    ),
+    "counts of a spline": (
+        [*RAILS, Entity(126, f"5,1,0,0,1,0,0.,0.,1.,1.,{NURBS}")],
+        "entity 126 at directory entry 5 has 25 parameters, its counts say 40",
+    ),
+    "knots that fall": (
+        [*RAILS, Entity(126, f"1,1,0,0,1,0,0.,2.,1.,1.,{NURBS}")],
+        "entity 126 at directory entry 5 has knots that do not rise",
+    ),
+    "a degree above its points": (
+        [*RAILS, Entity(126, f"1,3,0,0,1,0,0.,0.,1.,1.,{NURBS}")],
+        "entity 126 at directory entry 5 has degree 3 and 2 control points",
+    ),
+    "an entity that holds itself": (
+        [*RAILS, Entity(102, "1,5")],
+        "the entity at directory entry 5 holds itself",
+    ),
+    "a matrix that is not there": (
+        [*RAILS, Entity(124, "1.,0.,0.,0.,0.,1.,0.,0.,0.,0.,1.")],
+        "entity 124 at directory entry 5 has 11 numbers of 12",
+    ),
+}
+
+
+@pytest.mark.parametrize("name", DAMAGED)
+def test_a_damaged_file_names_the_entity(tmp_path: Path, name: str) -> None:
+    entities, message = DAMAGED[name]
+    with pytest.raises(InputError, match=f"damaged: {message}. Export it again"):
+        chosen_in(tmp_path, entities)
+
+
+def test_records_out_of_order_and_pointers_past_the_parameters_are_damage(tmp_path: Path) -> None:
+    lines = iges_text(RAILS).splitlines(keepends=True)
+    at = next(i for i, record in enumerate(lines) if record[72] == "D")
+    swapped = [*lines[: at + 1], lines[at + 3], lines[at + 2], lines[at + 1], *lines[at + 4 :]]
+    beyond = [lines[i].replace("       1       0", "      99       0", 1) if i == at else lines[i]
+              for i in range(len(lines))]  # fmt: skip
+    for damaged, message in (
+        (swapped, "record 2 of section D is numbered 'D      4'"),
+        (beyond, "directory entry 1 points at parameters that the file does not have"),
+    ):
+        (tmp_path / "a.igs").write_text("".join(damaged))
+        with pytest.raises(InputError, match=message):
+            read_cad(tmp_path / "a.igs")
+
+
+@pytest.mark.parametrize("seed", seeds(40, 6))
+def test_files_with_changed_digits_end_as_read_or_as_refused(tmp_path: Path, seed: int) -> None:
+    chance = random.Random(seed)
+    faces = [face for x in (0, 10, 20) for face in plane_face(x, 5)]
+    text = list(iges_text([*RAILS, *faces, level_name(5, "upper")]))
+    digits = [i for i, letter in enumerate(text) if letter.isdigit()]
+    for _ in range(chance.randint(1, 6)):
+        text[chance.choice(digits)] = str(chance.randrange(10))
+    (tmp_path / "a.igs").write_text("".join(text))
+    with contextlib.suppress(InputError):
+        assert read_cad(tmp_path / "a.igs").shapes

@@ -23,13 +23,23 @@ _GROUPS: Final = (1, 7, 14, 15)
 _COUNTED: Final = re.compile(rb"\s*(\d+)H")
 
 
-class _Entity(NamedTuple):
+class Entity(NamedTuple):
+    """One entity of a file."""
+
     kind: int
+    """Its type: 110 is a line."""
     form: int
+    """Of its kind."""
     level: int
+    """That it lies on; below 0 the entry of a property that lists several."""
+    transform: int
+    """The entry of the matrix that moves it; 0 for none."""
     label: str
+    """Of up to eight letters, with its subscript."""
     is_hidden: bool
+    """Whether it is blanked."""
     fields: tuple[bytes, ...]
+    """Its parameters, the kind first."""
 
 
 def item_names(text: bytes) -> ItemNames:
@@ -38,7 +48,7 @@ def item_names(text: bytes) -> ItemNames:
     Args:
         text: an IGES file as ``plain_text`` returns it.
     """
-    entities = dict(_entities(text))
+    entities = dict(entities_of(text))
     levels = {
         entity.level: _text(entity.fields[3])
         for entity in entities.values()
@@ -55,7 +65,7 @@ def item_names(text: bytes) -> ItemNames:
 
 
 def _candidates(
-    number: int, entities: Mapping[int, _Entity], levels: Mapping[int, str], groups: Sequence[int]
+    number: int, entities: Mapping[int, Entity], levels: Mapping[int, str], groups: Sequence[int]
 ) -> Iterator[Candidate]:
     """Yields the names of an entity: its own, of its groups, of its level."""
     own = entities[number]
@@ -70,7 +80,7 @@ def _candidates(
         yield Candidate(levels[own.level], "layer", own.level)
 
 
-def _given_name(entity: _Entity, entities: Mapping[int, _Entity]) -> str:
+def _given_name(entity: Entity, entities: Mapping[int, Entity]) -> str:
     """Returns what the name among an entity's properties says; empty without one."""
     for pointer in _properties(entity, entities):
         found = entities[pointer]
@@ -79,7 +89,7 @@ def _given_name(entity: _Entity, entities: Mapping[int, _Entity]) -> str:
     return ""
 
 
-def _properties(entity: _Entity, entities: Mapping[int, _Entity]) -> list[int]:
+def _properties(entity: Entity, entities: Mapping[int, Entity]) -> list[int]:
     """Returns the pointers to properties: the last numbers of an entity, behind their count."""
     numbers = [_number(field) for field in entity.fields]
     for count in range(1, len(numbers) - 1):
@@ -91,7 +101,7 @@ def _properties(entity: _Entity, entities: Mapping[int, _Entity]) -> list[int]:
     return []
 
 
-def _groups(entities: Mapping[int, _Entity]) -> dict[int, list[int]]:
+def _groups(entities: Mapping[int, Entity]) -> dict[int, list[int]]:
     """Returns for each entity the groups that it is in."""
     found: dict[int, list[int]] = defaultdict(list)
     for number, entity in entities.items():
@@ -101,7 +111,12 @@ def _groups(entities: Mapping[int, _Entity]) -> dict[int, list[int]]:
     return found
 
 
-def _entities(text: bytes) -> Iterator[tuple[int, _Entity]]:
+def entities_of(text: bytes) -> Iterator[tuple[int, Entity]]:
+    """Yields each entity of a file with its directory entry.
+
+    Args:
+        text: an IGES file as ``plain_text`` returns it.
+    """
     lines = text.split(b"\n")
     directory = [line[:72] for line in lines if line[72:73] == b"D"]
     separators = _separators(b"".join(line[:72] for line in lines if line[72:73] == b"G"))
@@ -115,10 +130,11 @@ def _entities(text: bytes) -> Iterator[tuple[int, _Entity]]:
         subscript = second[64:72].strip().decode("ascii", "replace")
         yield (
             i + 1,
-            _Entity(
+            Entity(
                 _number(first[:8]),
                 _number(second[32:40]),
                 _number(first[32:40]),
+                _number(first[48:56]),
                 f"{label}{subscript}" if label and subscript not in ("", "0") else label,
                 first[64:66].strip() in (b"1", b"01"),
                 tuple(fields_of(b"".join(parameters[i + 1]), *separators)),

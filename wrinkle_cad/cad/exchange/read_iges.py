@@ -20,6 +20,7 @@ from wrinkle_cad.cad.kernel.steps import KERNEL_ERRORS
 from wrinkle_cad.files.names import error_words
 
 from .collect import listed
+from .iges_faults import records_fault
 from .iges_names import fields_of, item_names
 from .naming import Marker, found_in
 from .shapes import CadFile
@@ -56,6 +57,9 @@ def read(source: Source, unit: str | None) -> CadFile:
     """
     text = plain_text(source.content)
     _check_records(source, text)
+    fault = records_fault(text)
+    if fault is not None:
+        raise source.fail(f"damaged: {fault}. Export it again.")
     declared = (_declared_unit(text),)
     check_unit(source, declared, unit)
     leaves, number_of = _leaves(source, text)

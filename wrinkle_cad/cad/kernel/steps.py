@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from contextlib import contextmanager
 
-from OCP import Geom, Standard, StdFail, TopoDS, gp
+from OCP import Geom, Standard, StdFail, TopoDS, Transfer, gp
 
 from wrinkle_cad.errors import CadError
 from wrinkle_cad.files.names import error_words
@@ -14,7 +14,7 @@ from wrinkle_cad.files.names import error_words
 KERNEL_ERRORS: tuple[type[Exception], ...] = (
     *(
         kind
-        for module in (Standard, StdFail, TopoDS, Geom, gp)
+        for module in (Standard, StdFail, TopoDS, Transfer, Geom, gp)
         for kind in vars(module).values()
         if isinstance(kind, type) and issubclass(kind, Exception)
     ),
