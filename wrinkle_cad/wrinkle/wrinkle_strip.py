@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from copy import copy
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, cast
 
 from wrinkle_cad.cad.rail.directrix import check_distinct, make_directrix, orient_alike
 from wrinkle_cad.errors import Finding
@@ -22,6 +22,8 @@ from .strip_findings import unused_findings
 from .triangulated_strip import TriangulatedStrip
 
 if TYPE_CHECKING:
+    from build123d import Solid
+
     from wrinkle_cad.report.material import Material
     from wrinkle_cad.report.verdict import Verdict
 
@@ -90,6 +92,32 @@ class WrinkleStrip(TriangulatedStrip):
             ),
             held=found.held,
         )
+
+    def thicken(self, thickness: float) -> Solid:
+        """Returns the strip as a solid of planes, as thick everywhere, with its name and color.
+
+        Creases are mitred. Whether parts of the strip that are far from each other along it meet
+        when thickened is not checked.
+
+        Args:
+            thickness: mm, to the side that the surface faces; below 0 to the other one.
+
+        Raises:
+            InputError: no thickness, or the strip bends too sharply for it.
+            CadError: the kernel makes no valid solid of it.
+
+        Example:
+            >>> import numpy as np
+            >>> x = np.linspace(0.0, 100.0, 51)
+            >>> flat = WrinkleStrip(np.stack((x, 0 * x), axis=1), np.stack((x, 0 * x + 20), axis=1))
+            >>> round(flat.thicken(1.5).volume, 6)
+            3000.0
+        """
+        from wrinkle_cad.cad.build123d_objects import to_build123d
+        from wrinkle_cad.cad.faces.thick_solid import thick_solid
+
+        made = thick_solid(self.triangulation, thickness)
+        return cast("Solid", to_build123d(made, label=self.name, color=self.color))
 
     def verdict(self, **judging: Any) -> Verdict:
         """Judges the strip: PASS or FAIL by limits and by those of its material, else its state.
