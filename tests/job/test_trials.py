@@ -133,6 +133,20 @@ def test_where_the_piece_is_not_the_surface_judged_what_cuts_that_is_tried() -> 
     ]
 
 
+def test_smooth_faces_are_tried_where_nothing_else_makes_the_piece_the_surface(
+    tmp_path: Path,
+) -> None:
+    vamp = Path(__file__).parents[2] / "shoe_examples" / "vamp_strip" / "vamp_strip.step"
+    (strip,) = strips_of(Job(input=vamp, output_dir=tmp_path / "out"))
+    assert strip["cut"]["differs"]
+    differs = {trial["change"]: trial["cut_differs"] for trial in strip["trials"]}
+    assert differs == {
+        "--tolerance 0.0125": False,
+        "--price none": True,
+        "--criteria bending": False,
+    }
+
+
 def test_on_an_upper_the_levers_are_those_of_the_waves() -> None:
     job = Job(input=Path("shoe.step"), waves=5, height=(3, 2), phase_deg=(0, 60), fade=0.4)
     words = [lever.words for lever in levers_of(job, on_upper=True)]

@@ -101,6 +101,9 @@ def add_trials(
     piece_differs = any(map(_piece_differs, entries))
     on_upper = chosen.upper is not None
     for lever in levers_of(job, on_upper=on_upper, piece_differs=piece_differs):
+        # Smooth faces take longest to make: they are the last resort.
+        if "surface" in lever.changes and all(map(_is_matched, entries)):
+            continue
         try:
             strips = _strips_of(replace(job, **lever.changes), chosen, upper, set(wanting))
             found = _figures_of(strips, limits)
@@ -129,6 +132,12 @@ def _written(value: Any) -> str:
 def _wants_help(entry: Mapping[str, Any]) -> bool:
     fails = entry["state"] != "developable" or entry["passed"] is False
     return fails or _piece_differs(entry)
+
+
+def _is_matched(entry: Mapping[str, Any]) -> bool:
+    """Whether the piece is the surface that is judged, or was with another change."""
+    tried = (trial.get("cut_differs", True) for trial in entry["trials"])
+    return not _piece_differs(entry) or not all(tried)
 
 
 def _piece_differs(entry: Mapping[str, Any]) -> bool:
