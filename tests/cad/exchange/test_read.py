@@ -272,6 +272,27 @@ def test_a_cut_brep_is_called_truncated(tmp_path: Path) -> None:
             read_text(tmp_path, content[: int(share * len(content))], "a.brep")
 
 
+@pytest.mark.parametrize(
+    ("old", "new", "message"),
+    [
+        (b"\nEd\n", b"\nEx\n", "cannot be understood"),
+        (b"\n0101101\n", b"\n01011x1\n", "cannot be understood"),
+        (b"\n1e-07\n", b"\nnan\n", "cannot be understood"),
+        (b"+47 0", b"+99 0", "consists of a shape that the file does not have"),
+        (b"\nTShapes 47", b"\nTShapes 48", "shape 48 of 48 cannot be understood"),
+    ],
+)
+def test_a_brep_whose_shapes_are_damaged_says_which(
+    tmp_path: Path, old: bytes, new: bytes, message: str
+) -> None:
+    wire = polyline((0.0, 0.0, 0.0), (1.0, 0.0, 0.0), (1.0, 2.0, 0.0))
+    content = brep_bytes(make_compound([arc(0.0), arc(30.0), box(), wire]))
+    assert read_text(tmp_path, content, "a.brep").shapes
+    assert old in content
+    with pytest.raises(InputError, match=rf"damaged: (shape \d+ of 47 )?{message}"):
+        read_text(tmp_path, content.replace(old, new, 1), "a.brep")
+
+
 @pytest.mark.parametrize("unit", ["MM", "IN", "FT", "M"])
 def test_iges_is_read_in_its_own_unit(tmp_path: Path, unit: str) -> None:
     writer = IGESControl_Writer(unit, 0)
