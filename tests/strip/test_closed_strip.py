@@ -77,6 +77,15 @@ def test_a_frustum_is_a_frustum_whatever_its_starts(turn: float) -> None:
     assert np.degrees(np.abs(found.fold)).max() < 6.1
 
 
+@pytest.mark.parametrize("turn", [0, 14, 60])
+def test_of_diagonals_that_cost_the_same_those_are_taken_that_step_on_p_first(turn: int) -> None:
+    t = np.linspace(0.0, 2 * np.pi, 113, endpoint=False)
+    t = np.roll(t + 1e-4 * np.sin(3 * t), turn)
+    p, q = (np.stack((50 * np.cos(t), 50 * np.sin(t), z + 0 * t), axis=1) for z in (0.0, 60.0))
+    found = triangulate(p, q, closed=True)
+    assert found.steps.tolist() == [0, 1] * 113
+
+
 def test_at_least_as_many_bridges_are_valid_as_in_any_strip_cut_open() -> None:
     p, q = wavy(24, 50.0, 0.0, 5), wavy(30, 40.0, 60.0, 3)
     found = triangulate(p, q, closed=True, price=None, planarity=1e-6)

@@ -95,6 +95,7 @@ class _Search:
         self.charge = np.zeros(len(around.weights))
         self.corridor: Corridor | None = None
         self.possible = np.zeros((0, 0), dtype=np.bool_)
+        self.own: tuple[Around, Corridor] | None = None
 
     @property
     def cost(self) -> _Cost:
@@ -125,6 +126,7 @@ class _Search:
             for part in ([j for j in starts if j < cut], [j for j in starts if j >= cut]):
                 if part:
                     self._search_range(part[0], part[-1] + 1, ranges)
+        self._begin_again()
 
     def _charged_anew(self, bound: Floats) -> list[_Range]:
         """The whole range, searched with a charge for each step on Q that is left out.
@@ -159,11 +161,10 @@ class _Search:
         to be on a good closed path, which then tells where there are few ways.
         """
         assert self.corridor is not None
-        own = self.seam, self.around, self.corridor
+        self.own = self.around, self.corridor
         self._begin_at(*self.corridor.middle())
         self._search_range(0, 1, [])
-        self.seam, self.around, self.corridor = own
-        self._look_for_better()
+        self._begin_as_given()
         if not self.possible.any(axis=1).all():
             return []
         i, j, count = self.corridor.narrowest(self.possible)
@@ -173,6 +174,32 @@ class _Search:
         anew: list[_Range] = []
         self._search_range(0, count, anew)
         return anew
+
+    def _begin_again(self) -> None:
+        """Finds the best path once more from sample 0 of P on.
+
+        Of paths that cost the same, the one is taken that steps on P first: from there, and not
+        from where the strip happened to be narrow.
+        """
+        if self.own is None or self.best is None:
+            return
+        cost, (i, j), steps = self.best
+        self._begin_as_given()
+        m, n = self.around.shape
+        at_p = i + np.cumsum(steps == 0) - (steps == 0)
+        (leaves,) = np.flatnonzero((steps == 0) & (at_p % m == 0))
+        column = j + int(np.count_nonzero(steps[:leaves]))
+        for first in ((column - 1) % n, column % n):
+            costs, steps, end, _ = self._program(first, first + 1)
+            if end == first + n and not cost < costs[0]:
+                self.best = costs[0], (0, first), steps
+                return
+
+    def _begin_as_given(self) -> None:
+        assert self.own is not None
+        self.seam = 0, 0
+        self.around, self.corridor = self.own
+        self._look_for_better()
 
     def _begin_at(self, i: int, j: int) -> None:
         """Counts samples from there on."""
@@ -198,7 +225,29 @@ class _Search:
 
         Returns what the program wrote down, of samples of P so far apart if a stride is given.
         """
-        around, n = self.around, self.around.shape[1]
+        n = self.around.shape[1]
+        costs, steps, end, crossings = self._program(first, stop, stride)
+        if not len(steps):
+            return crossings
+        start = min(range(len(costs)), key=costs.__getitem__)
+        landed = end - first - n
+        if landed != start:
+            if self._is_open(costs[start]):
+                cut = first + (start + landed + 1) // 2
+                heapq.heappush(ranges, (costs[start], first, cut, costs))
+        elif self._is_open(costs[start]):
+            self.best = costs[start], (self.seam[0], self.seam[1] + first + start), steps
+            self._look_for_better()
+        return crossings
+
+    def _program(
+        self, first: int, stop: int, stride: int | None = None
+    ) -> tuple[list[_Cost], Steps, int, Floats]:
+        """The least cost from each start, the best path and its end, and what was written down.
+
+        There is no path, but an empty one, where none may be better than the best.
+        """
+        around = self.around
         left, width = self._window(first, stop)
         self.programs += 1
         parts, choices, crossings = decide_range(
@@ -216,17 +265,9 @@ class _Search:
         costs = [_Cost(one, around.weights) for one in parts.tolist()]
         start = min(range(len(costs)), key=costs.__getitem__)
         if costs[start].parts[0] >= NEVER:
-            return crossings
+            return costs, np.zeros(0, dtype=np.int8), -1, crossings
         steps, end = follow_around(choices, left, first + start)
-        landed = end - first - n
-        if landed != start:
-            if self._is_open(costs[start]):
-                cut = first + (start + landed + 1) // 2
-                heapq.heappush(ranges, (costs[start], first, cut, costs))
-        elif self._is_open(costs[start]):
-            self.best = costs[start], (self.seam[0], self.seam[1] + first + start), steps
-            self._look_for_better()
-        return crossings
+        return costs, steps, end, crossings
 
     def _window(self, first: int, stop: int) -> Window:
         """The bridges that a program looks at: all of them until there is a best path."""
