@@ -97,3 +97,33 @@ def test_no_triangulation_of_a_shortened_strip_is_better(seed: int) -> None:
         assert math.fsum(found.unused) == pytest.approx(one["unused"], rel=1e-12, abs=1e-14)
         for part, best in zip(cost_of(one, criteria, cost, per_mm), least_cost, strict=True):
             assert brute_force.is_close(part, best), (seed, criteria, price, part, least_cost)
+
+
+def tube_with_tail(turn_deg: float) -> tuple[np.ndarray, np.ndarray]:
+    """A cylinder between square cuts; Q goes on by 8 mm, out of that cut by an angle."""
+    t = np.linspace(0.0, 2.0, 60)
+    p = np.stack((30 * np.sin(t), 0 * t, 30 * np.cos(t)), axis=1)
+    q = p + np.array([0.0, 25.0, 0.0])
+    ahead = np.array([math.cos(2.0), 0.0, -math.sin(2.0)])
+    out = np.array([math.sin(2.0), 0.0, math.cos(2.0)])
+    turn = math.radians(turn_deg)
+    way = math.cos(turn) * ahead + math.sin(turn) * out
+    return p, np.vstack((q, q[-1] + np.linspace(1.0, 8.0, 8)[:, None] * way))
+
+
+@pytest.mark.parametrize(("turn_deg", "left"), [(0, 0), (10, 0), (20, 8), (45, 8), (-90, 8)])
+def test_a_tail_is_given_up_where_it_turns_out_of_the_sheet(turn_deg: float, left: float) -> None:
+    found = triangulate(*tube_with_tail(turn_deg), ends="free", give_up=8.0)
+    assert found.unused == pytest.approx((0.0, 0.0, 0.0, left), abs=1e-9)
+
+
+@pytest.mark.parametrize("seed", range(30))
+def test_a_piece_of_a_cone_keeps_all_its_rail(seed: int) -> None:
+    random = np.random.default_rng(seed)
+    t = np.linspace(0.0, 2.0, 60)
+    radius, taper = random.uniform(20, 60), random.uniform(0.4, 1.0)
+    p = np.stack((radius * np.cos(t), radius * np.sin(t), 0 * t), axis=1)
+    t = np.linspace(random.uniform(0, 0.25), 2 - random.uniform(0, 0.25), 50)
+    height = random.uniform(10, 40)
+    q = np.stack((taper * radius * np.cos(t), taper * radius * np.sin(t), height + 0 * t), axis=1)
+    assert triangulate(p, q, ends="free", give_up=8.0).unused == (0.0, 0.0, 0.0, 0.0)

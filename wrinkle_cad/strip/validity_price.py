@@ -29,7 +29,9 @@ Floats = npt.NDArray[np.float64]
 
 GIVE_UP_PRICE: Final = 10.0
 """A length of rail is given up where it holds so many times the bending that it would hold if the
-least bending were spread over both rails."""
+least bending were spread over both rails. At 5 and at 10 none of 30 pieces of cones with unequal
+ends lost any rail (at 2.5 nine did), and a tail of 8 mm that turns out of a cylinder's square cut
+by 20 degrees or more was left; at 20 not even one that leaves it at a right angle was."""
 
 
 def checked_price(price: float | None) -> float | None:
