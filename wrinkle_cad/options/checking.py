@@ -79,6 +79,8 @@ def check_known(
     for name in given:
         if name not in names:
             near = get_close_matches(str(name), names, n=3)
+            # A unit that was left out is nearer than another word of like letters.
+            near = [each for each in near if each.startswith(f"{name}_")] or near
             advice = f"did you mean {' or '.join(near)}?" if near else f"give {', '.join(names)}."
             raise error(f"{source} has no option {_shown(name)}: {advice}")
 
