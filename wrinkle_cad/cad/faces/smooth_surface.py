@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final
 
-from wrinkle_cad.errors import CadError, Finding, InputError
+from wrinkle_cad.errors import CadError, Finding, InputError, Severity
 from wrinkle_cad.strip.rulings.held import NOTHING_HELD, Held
 
 from .exact_surface import rail_curve, surface_from_cut
@@ -18,6 +18,10 @@ if TYPE_CHECKING:
     from wrinkle_cad.strip.rulings.smooth_path import SmoothPath
     from wrinkle_cad.strip.rulings.surface import RuledStrip
     from wrinkle_cad.strip.triangulation import Triangulation
+
+
+FEW_FACES: Final = 8
+"""With so many faces a strip is not asked whether it has fewer as cones."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -48,6 +52,9 @@ def smooth_surface(
         ruled: its exact surface.
         held: what was asked of its rulings.
     """
+    from wrinkle_cad.cad.kernel.topology import faces_of
+
+    from .shell import build_faces
     from .smooth_shell import build_smooth_shell
 
     reason = _hindrance(rails)
@@ -60,9 +67,17 @@ def smooth_surface(
         made = build_smooth_shell(ruled, curves, triangulation, rails, samples)
     except (CadError, InputError) as error:
         return SmoothSurface(None, (_made_of_cones(name, f"it cannot be built ({error})"),))
-    findings = tuple(_refused(name, ruled, made.path))
     # Where no piece is smooth, the strip's own triangulation is as good as another.
-    return SmoothSurface((made.shell, made.path) if made.path.runs else None, findings)
+    if not made.path.runs:
+        return SmoothSurface(None, tuple(_refused(name, ruled, made.path)))
+    faces = len(faces_of(made.shell))
+    if faces > FEW_FACES:
+        cones = build_faces(triangulation, rails, samples, has_curves=True)
+        count = sum(map(len, cones.values()))
+        if count <= faces:
+            reason = f"it has {count} faces so, and {faces} with smooth pieces"
+            return SmoothSurface(None, (_made_of_cones(name, reason, "info"),))
+    return SmoothSurface((made.shell, made.path), tuple(_refused(name, ruled, made.path)))
 
 
 def _hindrance(rails: tuple[Directrix, Directrix]) -> str:
@@ -72,9 +87,9 @@ def _hindrance(rails: tuple[Directrix, Directrix]) -> str:
     return ""
 
 
-def _made_of_cones(name: str, reason: str) -> Finding:
+def _made_of_cones(name: str, reason: str, severity: Severity = "warning") -> Finding:
     message = f"{name} is made of cones, not of smooth pieces: {reason}."
-    return Finding("not-smooth", "warning", message)
+    return Finding("not-smooth", severity, message)
 
 
 def _refused(name: str, ruled: RuledStrip, path: SmoothPath) -> list[Finding]:
