@@ -261,6 +261,12 @@ MESH_ANGLE: Final = 0.2
 BATCH_TIMEOUT_S: Final = 600.0
 """s; a file of a batch that takes longer is given up."""
 
+COMPILE_PHASE: Final = "compile"
+"""What a job is at while functions are compiled, once after an installation."""
+
+BATCH_COMPILE_S: Final = 600.0
+"""s; so long may a job compile without that counting as its time."""
+
 BATCH_MEMORY_GIB: Final = 4.0
 """GiB of address space for one worker of a batch."""
 

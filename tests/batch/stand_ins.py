@@ -18,6 +18,7 @@ from pathlib import Path
 from wrinkle_cad.errors import CadError, ExportError
 from wrinkle_cad.job.job import Job
 from wrinkle_cad.job.outcome import JobDone, JobFailed, Progress
+from wrinkle_cad.settings import COMPILE_PHASE
 
 PHASES = ("read", "strip", "surface", "write", "page")
 KINDS = ("step", "dxf", "json", "html")
@@ -42,6 +43,17 @@ def job_by_content(job: Job, *, progress: Progress | None = None) -> JobDone | J
         summary={"strips": [{"name": job.name, "interior_bridges": 20, "invalid_bridges": 5}]},
         seconds=dict.fromkeys(PHASES, 0.01),
     )
+
+
+def compiling_job(job: Job, *, progress: Progress | None = None) -> JobDone | JobFailed:
+    """Takes long to compile, then as long as its input says."""
+    assert progress is not None
+    progress("strip", 0, 1)
+    progress(COMPILE_PHASE, 0, 1)
+    time.sleep(3.5)
+    progress("strip", 0, 1)
+    time.sleep(float(job.input.read_text()))
+    return JobDone(job=job, outputs=(), summary={}, seconds={})
 
 
 def slow_job(job: Job, *, progress: Progress | None = None) -> JobDone | JobFailed:

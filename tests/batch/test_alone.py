@@ -12,7 +12,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.batch.stand_ins import KINDS, job_by_content
+from tests.batch.stand_ins import KINDS, compiling_job, job_by_content
 from wrinkle_cad.batch.alone import answer_alone, run_alone
 from wrinkle_cad.cli.main import main
 from wrinkle_cad.errors import InputError, JobError
@@ -63,6 +63,20 @@ def test_a_crash_or_a_limit_is_one_sentence(
     assert outcome.error == error
     assert word in outcome.message
     assert "\n" not in outcome.message
+
+
+def test_what_is_compiled_is_not_the_files_time(tmp_path: Path) -> None:
+    outcome = run_alone(job_that("0", tmp_path), timeout=3.0, job_function=compiling_job)
+    assert isinstance(outcome, JobDone)
+
+
+@pytest.mark.slow
+def test_what_comes_after_compiling_is_the_files_time(tmp_path: Path) -> None:
+    outcome = run_alone(job_that("60", tmp_path), timeout=3.0, job_function=compiling_job)
+    assert isinstance(outcome, JobFailed)
+    assert outcome.error == "TimeLimit"
+    assert 3.0 < outcome.seconds["total"] < 4.0, "the time of compiling is not in it"
+    assert "in phase strip" in outcome.message
 
 
 def test_a_limit_out_of_its_range_is_refused(tmp_path: Path) -> None:

@@ -19,8 +19,12 @@ print(type(bank_lengths._cache).__name__)
 
 def cache_of(folder: Path, environment: dict[str, str]) -> str:
     """The kind of cache that compiled functions of a package in this folder have."""
+    return output_of(CODE, folder, environment)
+
+
+def output_of(code: str, folder: Path, environment: dict[str, str]) -> str:
     result = subprocess.run(
-        [sys.executable, "-B", "-c", CODE],
+        [sys.executable, "-B", "-c", code],
         cwd=folder,
         env=environment,
         check=True,
@@ -38,6 +42,28 @@ def test_machine_code_is_kept_where_a_folder_can_be_written(tmp_path: Path) -> N
     }
     assert cache_of(tmp_path, environment) == "FunctionCache"
     assert list(tmp_path.rglob("*.nbi"))
+
+
+TELLING_CODE = """
+import numpy as np
+from wrinkle_cad.strip.compiled import compiling_told
+from wrinkle_cad.strip.sightlines import bank_lengths
+told = []
+with compiling_told(told.append):
+    for _ in range(2):
+        bank_lengths(np.array([[3.0], [4.0], [0.0]]))
+print(told)
+"""
+
+
+def test_compiling_is_told_and_reading_machine_code_is_not(tmp_path: Path) -> None:
+    environment = {
+        **os.environ,
+        "NUMBA_CACHE_DIR": str(tmp_path),
+        "PYTHONPATH": str(PACKAGE.parent),
+    }
+    for told in ("[True, False]", "[]"):
+        assert output_of(TELLING_CODE, tmp_path, environment) == told
 
 
 def test_code_is_compiled_anew_where_no_folder_can_be_written(tmp_path: Path) -> None:

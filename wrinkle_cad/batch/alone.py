@@ -19,6 +19,7 @@ from wrinkle_cad.errors import JobError
 from wrinkle_cad.files.staging import clear_abandoned
 from wrinkle_cad.job.job import Job
 from wrinkle_cad.job.outcome import JobDone, JobFailed, Progress
+from wrinkle_cad.job.phases import PhaseClock
 from wrinkle_cad.job.workflow import run_job
 
 Answer = TypeVar("Answer")
@@ -98,9 +99,11 @@ def answer_alone(
 def _answered(
     question: Callable[[Path], object], job: Job, *, progress: Progress | None = None
 ) -> JobDone:
-    if progress is not None:
-        progress("read", 0, 1)
-    return JobDone(job=job, outputs=(), summary={"answer": question(job.input)}, seconds={})
+    from wrinkle_cad.strip.compiled import compiling_told
+
+    clock = PhaseClock(progress, 1)
+    with compiling_told(clock.tell_compiling), clock.phase("read"):
+        return JobDone(job=job, outputs=(), summary={"answer": question(job.input)}, seconds={})
 
 
 def _outcome_of(pool: Pool, task: Task, progress: Progress | None) -> JobDone | JobFailed:

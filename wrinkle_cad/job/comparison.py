@@ -4,10 +4,13 @@ from __future__ import annotations
 
 from typing import Final
 
+from wrinkle_cad.strip.compiled import compiling_told
+
 from .job import Job
 from .outcome import JobDone, Progress
 from .outputs import outputs_together
 from .parts import rails_of, read_chosen, strip_of
+from .phases import PhaseClock
 from .summary import to_json
 
 _KINDS: Final = ("compare.json", "compare.html")
@@ -30,8 +33,12 @@ def compare_job(job: Job, *, progress: Progress | None = None) -> JobDone:
         InputError: the file or a curve cannot be used.
         ExportError: the files cannot be written.
     """
-    if progress is not None:
-        progress("compare", 0, 1)
+    clock = PhaseClock(progress, 1)
+    with compiling_told(clock.tell_compiling), clock.phase("compare"):
+        return _compared(job)
+
+
+def _compared(job: Job) -> JobDone:
     _, chosen = read_chosen(job, _KINDS)
 
     from wrinkle_cad.report.compare import compare, comparison_summary, write_comparison_page

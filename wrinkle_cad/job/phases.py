@@ -6,6 +6,8 @@ import time
 from collections.abc import Iterator
 from contextlib import contextmanager
 
+from wrinkle_cad.settings import COMPILE_PHASE
+
 from .outcome import Progress
 
 
@@ -36,6 +38,10 @@ class PhaseClock:
             self.seconds[name] = self.seconds.get(name, 0.0) + time.perf_counter() - start
         self._done = min(self._done + 1, self._total)
         self._tell(name)
+
+    def tell_compiling(self, is_under_way: bool) -> None:
+        """Tells the listener that functions are compiled, then that the phase goes on."""
+        self._tell(COMPILE_PHASE if is_under_way else self.current)
 
     def _tell(self, name: str) -> None:
         if self._progress is not None:

@@ -49,9 +49,11 @@ def run_job(job: Job, *, progress: Progress | None = None) -> JobDone | JobFaile
         >>> type(run_job(Job(input=Path("gone.step")))).__name__
         'JobFailed'
     """
+    from wrinkle_cad.strip.compiled import compiling_told
+
     clock = PhaseClock(progress, len(_PHASES))
     try:
-        with findings_in_the_result():
+        with findings_in_the_result(), compiling_told(clock.tell_compiling):
             return _run(job, clock)
     except (WrinkleError, MemoryError, OSError) as error:
         return JobFailed(

@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+import threading
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from typing import TypeVar
 
 import numba
+from numba.core import event
 
 Function = TypeVar("Function", bound=Callable[..., object])
 
@@ -23,3 +26,49 @@ def compiled(function: Function) -> Function:
     except RuntimeError:
         fast = numba.njit(function, nogil=True, error_model="numpy")
     return fast
+
+
+@contextmanager
+def compiling_told(tell: Callable[[bool], None]) -> Iterator[None]:
+    """Tells when this thread begins to compile within the block, and when it goes on.
+
+    Args:
+        tell: called with True as a compilation begins, with False as it ends; those of functions
+            within functions count as one. Machine code that is read from the disk is no
+            compilation.
+
+    Example:
+        >>> import numpy as np
+        >>> told = []
+        >>> with compiling_told(told.append):
+        ...     _ = compiled(lambda x: x + 1.0)(2.0)
+        >>> told
+        [True, False]
+    """
+    listener = _Compiling(tell)
+    event.register("numba:compile", listener)
+    try:
+        yield
+    finally:
+        event.unregister("numba:compile", listener)
+
+
+class _Compiling(event.Listener):  # type: ignore[misc]  # numba is untyped
+    """Hears of every function that is compiled, in whatever thread."""
+
+    def __init__(self, tell: Callable[[bool], None]) -> None:
+        self._tell = tell
+        self._thread = threading.get_ident()
+        self._depth = 0
+
+    def on_start(self, _: object) -> None:
+        if threading.get_ident() == self._thread:
+            self._depth += 1
+            if self._depth == 1:
+                self._tell(True)
+
+    def on_end(self, _: object) -> None:
+        if threading.get_ident() == self._thread:
+            self._depth -= 1
+            if self._depth == 0:
+                self._tell(False)

@@ -108,6 +108,8 @@ class _Worker:
         self.began = False
         self.phase = ""
         self.since = 0.0
+        self.compiled_s = 0.0
+        self.compiling_since: float | None = None
         self.peak_bytes = 0
         self.last_output.clear()
 
@@ -117,6 +119,19 @@ class _Worker:
         # A worker that died idle is noticed by the next look at it.
         with contextlib.suppress(BrokenPipeError, ConnectionResetError):
             self.pipe.send(task)
+
+    def reach(self, phase: PhaseReached) -> None:
+        """Takes note of a phase; what it compiles is no fault of its file."""
+        self.phase = phase.name
+        if self.compiling_since is not None:
+            self.compiled_s += phase.at - self.compiling_since
+        self.compiling_since = phase.at if phase.name == settings.COMPILE_PHASE else None
+
+    def worked_s(self) -> float:
+        """Seconds that the job took so far, but for what it compiled."""
+        now = time.monotonic()
+        compiling = 0.0 if self.compiling_since is None else now - self.compiling_since
+        return now - self.since - min(self.compiled_s + compiling, settings.BATCH_COMPILE_S)
 
     def read_stderr(self) -> None:
         """Takes what it wrote to stderr and keeps the end of it."""
@@ -152,7 +167,7 @@ class _Worker:
             phase=self.phase,
             fault=self.fault,
             peak_bytes=self.peak_bytes,
-            seconds=time.monotonic() - self.since,
+            seconds=self.worked_s(),
             stderr=b"".join(self.last_output)[-_KEPT_BYTES:].decode("utf-8", "replace"),
         )
 
@@ -223,7 +238,7 @@ class WorkerPool:
             if isinstance(message, Began):
                 worker.began = True
             elif isinstance(message, PhaseReached):
-                worker.phase = message.name
+                worker.reach(message)
                 yield Phase(key, message.name, message.done, message.total)
             elif isinstance(message, WorkerFault):
                 worker.fault = message
@@ -231,7 +246,7 @@ class WorkerPool:
                 yield self._finish(worker, key, message, is_alive=is_alive)
                 return
         limit = self._limits.timeout_s
-        is_late = limit is not None and time.monotonic() - worker.since > limit
+        is_late = limit is not None and worker.worked_s() > limit
         if not is_alive or is_late:
             yield from self._end(worker, key, is_late=is_late and is_alive)
 

@@ -46,6 +46,8 @@ class PhaseReached:
     """How many of its parts are done."""
     total: int
     """How many parts there are."""
+    at: float
+    """s on the clock that this machine's processes share."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -167,6 +169,6 @@ def _phase_sender(tasks: Connection) -> Callable[[str, int, int], None]:
         now = time.monotonic()
         if name != last_name or now - last_time > _PHASE_INTERVAL_S:
             last_name, last_time = name, now
-            tasks.send(PhaseReached(name, done, total))
+            tasks.send(PhaseReached(name, done, total, now))
 
     return tell
