@@ -264,9 +264,6 @@ BATCH_TIMEOUT_S: Final = 600.0
 COMPILE_PHASE: Final = "compile"
 """What a job is at while functions are compiled, once after an installation."""
 
-BATCH_COMPILE_S: Final = 600.0
-"""s; so long may a job compile without that counting as its time."""
-
 BATCH_MEMORY_GIB: Final = 4.0
 """GiB of address space for one worker of a batch."""
 

@@ -26,6 +26,7 @@ from wrinkle_cad.cad.rail.directrix import (
     reversed_directrix,
     sample_directrix,
 )
+from wrinkle_cad.cad.rail.joint_samples import sampled_alone
 from wrinkle_cad.errors import InputError
 
 HAS_CADQUERY = importlib.util.find_spec("cadquery") is not None
@@ -222,6 +223,13 @@ def test_a_curve_is_sampled_within_the_tolerance() -> None:
         gaps = np.linalg.norm(np.cross(points - start, way), axis=1)
         assert gaps.max() <= 0.01 * (1.0 + 1e-9)
     assert len(sample_directrix(rail, 0.01, max_chord=0.5).points) > 2 * len(samples.points)
+
+
+def test_a_rail_of_another_unit_is_told_by_its_length() -> None:
+    p, q = (make_directrix(edge_of(1e7 * np.array(CURVE) + [0, y, 0], 3)) for y in (0.0, 30.0))
+    with pytest.raises(InputError, match=r"Rail P needs \d+ chords .* 4\.\d+e\+08 mm long"):
+        sampled_alone(p, q, 0.05)
+    assert len(sampled_alone(p, q, 5e4)[0].points) < 100
 
 
 @pytest.mark.parametrize("source", [[A], np.array([A]), make_vertex(A)])

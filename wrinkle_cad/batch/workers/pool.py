@@ -28,6 +28,8 @@ from .worker import Began, PhaseReached, WorkerFault, peak_bytes, serve
 
 _GOODBYE_S: Final = 2.0
 _KEPT_BYTES: Final = 4000
+_LONGEST_COMPILATION_S: Final = 600.0
+"""s; so long may a job compile without that counting as its time."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -131,7 +133,7 @@ class _Worker:
         """Seconds that the job took so far, but for what it compiled."""
         now = time.monotonic()
         compiling = 0.0 if self.compiling_since is None else now - self.compiling_since
-        return now - self.since - min(self.compiled_s + compiling, settings.BATCH_COMPILE_S)
+        return now - self.since - min(self.compiled_s + compiling, _LONGEST_COMPILATION_S)
 
     def read_stderr(self) -> None:
         """Takes what it wrote to stderr and keeps the end of it."""

@@ -20,7 +20,7 @@ from OCP.TopoDS import TopoDS_Face, TopoDS_Vertex
 
 from wrinkle_cad import settings
 from wrinkle_cad.cad.kernel.evaluation import PoleCurve
-from wrinkle_cad.cad.kernel.splines import make_curve_2d, make_surface
+from wrinkle_cad.cad.kernel.splines import insert_u_knots, make_curve_2d, make_surface
 
 from .face_borders import Border, BorderEdge
 from .on_surface import degenerated_edge, on_ruling, put_on_face
@@ -57,8 +57,7 @@ def cone_face(
     surface = _surface(shape, apex, is_start=not from_apex, is_end=not to_apex)
     if to_apex and from_apex:
         knots = _refined(shape, apex, np.clip(knots, first, last))
-    for knot in knots[(knots > first) & (knots < last)].tolist():
-        surface.InsertUKnot(knot, 1, settings.KNOT_GAP, False)
+    insert_u_knots(surface, knots[(knots > first) & (knots < last)], settings.KNOT_GAP)
     builder.MakeFace(face, surface, settings.CONFUSION)
     low, high = (1.0 if not from_apex else 0.0), (1.0 if not to_apex else 0.0)
     put_on_face(bank.edge, _straight(first, last, (first, low), (last, high)), face)

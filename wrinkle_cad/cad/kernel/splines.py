@@ -117,6 +117,30 @@ def make_surface(
         return Geom_BSplineSurface(points, shares, *values, *counts, *degrees, False, False)
 
 
+def insert_u_knots(surface: Geom_BSplineSurface, knots: ArrayLike, gap: float) -> None:
+    """Gives a surface single knots along u, all at once: one by one takes time by their square.
+
+    Args:
+        surface: is changed; its points stay where they are.
+        knots: (k,) increasing parameters; none may be.
+        gap: a knot nearer than this to one that is there already is that one.
+
+    Example:
+        >>> corners = [[[0, 0, 0], [0, 9, 0]], [[9, 0, 0], [9, 9, 3]]]
+        >>> surface = make_surface(corners, ((0, 1), (0, 1)), ((2, 2), (2, 2)), (1, 1))
+        >>> insert_u_knots(surface, [0.25, 0.5], 1e-9)
+        >>> surface.NbUKnots()
+        4
+    """
+    values = np.asarray(knots, dtype=np.float64)
+    if not len(values):
+        return
+    values = values[np.diff(values, prepend=-np.inf) > gap]
+    with kernel_step("give a surface knots"):
+        counts = _integer_array(np.ones(len(values), dtype=np.int64))
+        surface.InsertUKnots(_real_array(values), counts, gap, False)
+
+
 def _point_array(points: Floats) -> PointRow:
     array = PointRow(1, len(points))
     for i, (x, y, z) in enumerate(points.tolist(), start=1):

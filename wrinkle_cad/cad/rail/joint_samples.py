@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 from numpy.typing import NDArray
 
 from wrinkle_cad import settings
+from wrinkle_cad.errors import InputError
 
 from .directrix import Directrix, sample_directrix
 
@@ -19,6 +20,9 @@ if TYPE_CHECKING:
 
 Floats = NDArray[np.float64]
 Search = Callable[[Floats, Floats], "Triangulation"]
+
+MOST_CHORDS: Final = 20_000
+"""A rail that needs more of them has another unit than was meant; its strip would take minutes."""
 
 
 def sampled_alone(
@@ -36,6 +40,13 @@ def sampled_alone(
         InputError: a tolerance or ``max_chord`` that is not positive, or too fine.
     """
     p_samples, q_samples = (_sampled(rail, tolerance, max_chord) for rail in (p, q))
+    for name, rail, samples in (("P", p, p_samples), ("Q", q, q_samples)):
+        if not rail.is_polyline and len(samples.points) > MOST_CHORDS:
+            raise InputError(
+                f"Rail {name} needs {len(samples.points) - 1} chords to be followed within"
+                f" {tolerance:g} mm, and at most {MOST_CHORDS} are taken: give a larger"
+                f" tolerance or max_chord, or check its unit (it is {rail.length:.6g} mm long)."
+            )
     return p_samples, q_samples
 
 

@@ -149,8 +149,12 @@ def turned_in(
 
 
 def _cured(before: Floats, after: Floats, across: Floats) -> float:
-    """The share of the twist that is gone, as the mean of its square along the rail."""
-    old, new = (math.fsum((across * twist * twist).tolist()) for twist in (before, after))
+    """The share of the twist that is gone, as the mean of its square along the rail.
+
+    Where the rail runs against the strip nothing is gained by turning it.
+    """
+    along = np.maximum(across, 0.0)
+    old, new = (math.fsum((along * twist * twist).tolist()) for twist in (before, after))
     return 1.0 - math.sqrt(new / old) if old > 0.0 else 0.0
 
 
