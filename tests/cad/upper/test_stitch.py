@@ -344,6 +344,18 @@ def test_profiles_of_another_opening_are_refused() -> None:
         stitch(elsewhere, wrinkle()[0])
 
 
+def test_facets_with_chords_off_their_rails_are_refused_and_those_of_straight_rails_sewn() -> None:
+    wavy = WrinkleStrip(*profile_curves(opening(), waves=5, height=3.0), surface="facets")
+    with pytest.raises(InputError, match=r"made of facets, whose chords leave its rails by 0\.0"):
+        stitch(opening(), wavy)
+    p, q = (
+        build123d.Edge.make_line((-40, -8), (40, -8)),
+        build123d.Edge.make_line((-40, 8), (40, 8)),
+    )
+    flat = carve(build123d.Face.make_rect(100, 60), p, q)
+    assert stitch(flat, WrinkleStrip(p, q, surface="facets")).report.is_valid
+
+
 def test_a_wave_without_margin_is_refused_since_its_band_would_close_up() -> None:
     with pytest.raises(InputError, match=r"touches the opening's boundary .* carve with a margin"):
         stitched(opening(0.0))

@@ -27,6 +27,7 @@ from wrinkle_cad.cad.rail.closed_cut import cut_open, without_end
 from wrinkle_cad.cad.rail.directrix import Directrix, make_directrix, sample_directrix
 from wrinkle_cad.cad.rail.joint_samples import met_at_ends, samples_against, search_between
 from wrinkle_cad.errors import InputError
+from wrinkle_cad.strip.crossings import self_crossings
 from wrinkle_cad.strip.curve.nearest import nearest_on_polyline
 from wrinkle_cad.strip.curve.polyline import row_lengths, segment_lengths
 from wrinkle_cad.strip.curve.sampling import Samples
@@ -36,6 +37,7 @@ from wrinkle_cad.strip.sampled_strip import SampledStrip
 from wrinkle_cad.strip.triangulation import Triangulation, triangulate
 
 from .opening import Opening
+from .opening_outline import Rail
 
 Floats = NDArray[np.float64]
 
@@ -226,6 +228,27 @@ def _searched(
     return rails, sampled, triangulation
 
 
+def check_sewable(strip: StripLike) -> None:
+    """Checks that the borders of a strip's faces are its rails, as they are not of facets.
+
+    Raises:
+        InputError: chords of a strip of facets leave its rails by more than what is sewn.
+    """
+    if strip.surface != "facets":
+        return
+    for rail, samples in ((strip.p, strip.p_samples), (strip.q, strip.q_samples)):
+        middles = rail.point_at(0.5 * (samples.parameters[1:] + samples.parameters[:-1]))
+        chords = np.diff(samples.points, axis=0)
+        across = np.cross(middles - samples.points[:-1], chords)
+        apart = float((row_lengths(across) / row_lengths(chords)).max(initial=0.0))
+        if apart > settings.SEWING:
+            raise InputError(
+                f"Strip {strip.name} is made of facets, whose chords leave its rails by"
+                f" {apart:.2g} mm, so that it cannot be sewn into an upper, where at most"
+                f" {settings.SEWING:g} mm may be. Choose the surface cones or smooth."
+            )
+
+
 def check_beside(samples: Samples, edges: Sequence[TopoDS_Edge], name: str) -> None:
     """Checks that a closed profile belongs to the side of a ring-shaped opening.
 
@@ -307,14 +330,27 @@ def _overhang(triangulation: Triangulation, opening: Opening, i: int) -> float:
     nearest = np.linalg.norm(middles[:, None] - rail.points[None], axis=2).argmin(axis=1)
     facing = (areas * rail.feet.normals[nearest]).sum(axis=1) * np.sign(facing_of_strip.sum())
     sizes = np.linalg.norm(areas, axis=1)
-    is_against = (facing < 0.0) & ~_below_overhangs(triangulation, rail.tangents[nearest], i)
+    is_against = facing < 0.0
+    # A band that cuts itself was not meant to overhang.
+    is_much = sizes[is_against].sum() > settings.BAND_OVERHANG_LIMIT * sizes.sum()
+    if is_much and not self_crossings(triangulation).count:
+        is_against &= ~_below_overhangs(triangulation, rail, nearest, i)
     return float(sizes[is_against].sum() / sizes.sum())
 
 
-def _below_overhangs(triangulation: Triangulation, tangents: Floats, i: int) -> NDArray[np.bool_]:
-    """Returns (t,) bool: triangles on a chord of the profile that runs against (t, 3) tangents."""
+def _below_overhangs(
+    triangulation: Triangulation, rail: Rail, nearest: NDArray[np.int64], i: int
+) -> NDArray[np.bool_]:
+    """Returns (t,) bool: triangles on a chord of the profile that runs back along its rail.
+
+    Not where it does so because the upper curves: beyond its centers of curvature.
+    """
     is_on_q = triangulation.triangles >= len(triangulation.p)
     on_profile = np.sort(np.where(is_on_q == (i == 0), triangulation.triangles, -1), axis=1)
     corners = np.vstack((triangulation.p, triangulation.q))[on_profile[:, 1:]]
-    along = ((corners[:, 1] - corners[:, 0]) * tangents).sum(axis=1)
-    return np.asarray((on_profile[:, 1] >= 0) & (along < 0.0))
+    along = ((corners[:, 1] - corners[:, 0]) * rail.tangents[nearest]).sum(axis=1)
+    turning = np.gradient(rail.feet.normals, rail.shares * rail.length, axis=0)
+    bend = (turning * rail.tangents).sum(axis=1)[nearest]
+    raised = corners.mean(axis=1) - rail.points[nearest]
+    height = (raised * rail.feet.normals[nearest]).sum(axis=1)
+    return np.asarray((on_profile[:, 1] >= 0) & (along < 0.0) & (1.0 + height * bend > 0.0))

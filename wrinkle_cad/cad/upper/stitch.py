@@ -26,7 +26,7 @@ from wrinkle_cad.strip.curve.polyline import row_lengths
 from wrinkle_cad.strip.portable import norm
 from wrinkle_cad.strip.ways import unused_text
 
-from .bands import Band, StripLike, band_name, check_beside, make_band
+from .bands import Band, StripLike, band_name, check_beside, check_sewable, make_band
 from .border_check import compared_border
 from .carve import carve_shapes
 from .drawing import upper_drawing
@@ -247,6 +247,7 @@ def _check_kinds(openings: Sequence[object], strips: Sequence[object]) -> None:
                 f"A strip cannot be a {type(strip).__name__}: pass a WrinkleStrip between the"
                 " opening's profiles."
             )
+        check_sewable(cast("StripLike", strip))
 
 
 def _carved_together(openings: Sequence[Opening], strips: Sequence[StripLike]) -> list[Opening]:
