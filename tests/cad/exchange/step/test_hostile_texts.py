@@ -29,6 +29,8 @@ RUNS = {
     "comments that do not end": b"/* " * (SIZE // 3),
     "comments": b"/**/" * (SIZE // 4),
     "quotes": b"#1=A(" + b"'" * SIZE + b");",
+    "empty statements": b";" * SIZE,
+    "empty statements apart": b" ;\n" * (SIZE // 3),
     "empty strings": b"#1=A(" + b", ''" * (SIZE // 4) + b");",
     "parentheses": b"#1=A(" + b"(" * SIZE,
     "sections": b"DATA(" * (SIZE // 5),

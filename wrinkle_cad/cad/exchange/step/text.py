@@ -14,7 +14,7 @@ from typing import Final
 
 from wrinkle_cad.cad.exchange.sniff import Source
 
-_TOKEN = re.compile(rb"'(?:[^']|'')*'|/\*.*?(?:\*/|\Z)|;", re.DOTALL)
+_TOKEN = re.compile(rb"'(?:[^']|'')*'|/\*.*?(?:\*/|\Z)|;[\s;]*", re.DOTALL)
 _HEAD = re.compile(rb"#\s*(\d+)\s*=\s*(.*)", re.DOTALL)
 _END = re.compile(rb"END-ISO-10303-21\s*;")
 _SECTION = re.compile(rb"(?<![\w#])(DATA|ENDSEC)\s*(?:\([^;]*\)\s*)?;")
