@@ -30,7 +30,11 @@ from wrinkle_cad.job.wrinkled_upper import wrinkle_upper
 from wrinkle_cad.pattern.piece.piece import PatternPiece
 
 EXAMPLES = Path(__file__).parent.parent / "shoe_examples"
-ON_UPPER = ("one_wrinkle", "three_wrinkles", "across_seam", "feather_to_feather")
+ON_UPPER = [
+    "one_wrinkle",
+    "three_wrinkles",
+    *(pytest.param(name, marks=pytest.mark.slow) for name in ("across_seam", "feather_to_feather")),
+]
 RELATIVE = 1e-4
 
 Floats = NDArray[np.float64]

@@ -89,6 +89,7 @@ def test_settings_beside_a_file_cannot_lead_out(bench: Bench, tmp_path: Path, sh
     assert all(name.count("/") == 0 for name in bench.files())
 
 
+@pytest.mark.slow
 def test_labels_in_real_files_never_become_paths(
     make_bench: Callable[[str], Bench], tmp_path: Path
 ) -> None:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import pytest
+
 from tests.batch.conftest import Bench
 from tests.batch.real_faults import faulty_job
 from tests.batch.strips import EXAMPLE
@@ -13,6 +15,7 @@ ROOMS = (0, 1000, 15_000, 100_000, 300_000)
 CRASHES = ("SIGSEGV-surface", "SIGKILL-write", "memory-write")
 
 
+@pytest.mark.slow
 def test_a_fault_in_any_phase_of_the_real_job_costs_one_file(bench: Bench) -> None:
     text = EXAMPLE.read_text()
     names = [f"cad-{phase}" for phase in PHASES] + [f"room-{room}" for room in ROOMS]

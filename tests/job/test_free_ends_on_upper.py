@@ -41,10 +41,8 @@ def made(ball: Path, **options: object) -> WrinkledUpper:
     return wrinkle_upper(job, choose_inputs(read_cad(ball)))
 
 
-@pytest.mark.parametrize(
-    "options",
-    [{"pinned": ((50.0, 50.0),)}, pytest.param({"margin": 5.0}, marks=pytest.mark.slow)],
-)
+@pytest.mark.slow
+@pytest.mark.parametrize("options", [{"pinned": ((50.0, 50.0),)}, {"margin": 5.0}])
 def test_an_opening_ends_where_the_strip_does(ball: Path, options: dict) -> None:
     wrinkled = made(ball, **options)
     (strip,) = wrinkled.strips

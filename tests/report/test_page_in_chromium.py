@@ -411,8 +411,19 @@ FIRST_SCREENS = {
 }
 
 
-@pytest.mark.parametrize(("width", "height"), [(1366, 768), (390, 844)])
-@pytest.mark.parametrize("name", FIRST_SCREENS)
+@pytest.mark.parametrize(
+    ("name", "width", "height"),
+    [
+        ("three", 1366, 768),
+        ("three", 390, 844),
+        ("creased", 1366, 768),
+        ("stretched", 390, 844),
+        pytest.param("creased", 390, 844, marks=pytest.mark.slow),
+        pytest.param("stretched", 1366, 768, marks=pytest.mark.slow),
+        pytest.param("one", 1366, 768, marks=pytest.mark.slow),
+        pytest.param("one", 390, 844, marks=pytest.mark.slow),
+    ],
+)
 def test_verdict_picture_and_figures_stand_on_the_first_screen(
     browser: webdriver.Chrome, tmp_path: Path, name: str, width: int, height: int
 ) -> None:

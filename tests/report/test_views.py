@@ -74,4 +74,7 @@ def test_paths_and_measures_are_those_of_the_triangulations() -> None:
 
 
 def test_without_strips_there_is_still_a_scene() -> None:
-    assert scene_payload([], None) == {"center": [0.0, 0.0, 0.0], "strips": [], "body": None}
+    scene = scene_payload([], None)
+    assert scene["center"] == [0.0, 0.0, 0.0]
+    assert scene["strips"] == []
+    assert scene["body"] is None

@@ -47,6 +47,7 @@ def test_creases_are_mitred_so_that_both_planes_are_as_thick(degrees):
     assert found == pytest.approx((flat - mitre, flat + mitre), rel=3e-5)
 
 
+@pytest.mark.slow
 def test_a_closed_strip_becomes_a_tube():
     frustum = WrinkleStrip(Edge.make_circle(50), Pos(0, 0, 80) * Edge.make_circle(30), name="cuff")
     solid = frustum.thicken(1.0)

@@ -225,6 +225,7 @@ def test_a_curve_is_sampled_within_the_tolerance() -> None:
     assert len(sample_directrix(rail, 0.01, max_chord=0.5).points) > 2 * len(samples.points)
 
 
+@pytest.mark.slow
 def test_a_rail_of_another_unit_is_told_by_its_length() -> None:
     p, q = (make_directrix(edge_of(1e7 * np.array(CURVE) + [0, y, 0], 3)) for y in (0.0, 30.0))
     with pytest.raises(InputError, match=r"Rail P needs \d+ chords .* 4\.\d+e\+08 mm long"):

@@ -208,7 +208,7 @@ def test_numbers_out_of_range_are_refused(options: dict[str, float], named: str)
 
 
 def test_an_upper_without_faces_is_refused() -> None:
-    with pytest.raises(InputError, match="without faces"):
+    with pytest.raises(InputError, match="There is no face in the upper"):
         carve(rails()[0], *rails())
 
 

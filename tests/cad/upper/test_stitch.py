@@ -447,6 +447,7 @@ def test_a_ship_hull_is_carved_and_stitched(
     check_real(hull.shape, rail(40.0), rail(-40.0), 2500.0, tmp_path, freecadcmd)
 
 
+@pytest.mark.slow
 @pytest.mark.realdata
 @pytest.mark.freecad
 def test_a_wing_is_carved_across_two_faces_and_stitched(
