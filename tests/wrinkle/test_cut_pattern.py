@@ -1,19 +1,21 @@
 from __future__ import annotations
 
 import itertools
+from copy import copy
 from datetime import UTC, datetime
 from pathlib import Path
 
 import numpy as np
 import pytest
 
-from wrinkle_cad import Pattern, PieceSettings, WrinkleStrip
+from wrinkle_cad import NotchRule, Pattern, PieceSettings, WrinkleStrip
 from wrinkle_cad.cad.exchange.choose import choose_inputs
 from wrinkle_cad.cad.exchange.read import read_cad
 from wrinkle_cad.errors import InputError
 from wrinkle_cad.job.job import Job
 from wrinkle_cad.job.parts import limits_of, piece_settings_of
 from wrinkle_cad.job.wrinkled_upper import WrinkledUpper, wrinkle_upper
+from wrinkle_cad.strip.curve.sampling import Samples
 from wrinkle_cad.wrinkle.cut_pattern import pattern_of_strips
 
 ON_UPPER = Path(__file__).parents[2] / "shoe_examples" / "one_wrinkle" / "one_wrinkle.step"
@@ -60,6 +62,17 @@ def test_sewn_pieces_have_notches_at_the_same_arcs(upper: WrinkledUpper) -> None
     assert len(pattern.notch_arcs(wrinkle, P)) == 6
     assert pattern.notch_arcs(wrinkle, P) == pytest.approx(pattern.notch_arcs(band_p, Q))
     assert pattern.notch_arcs(wrinkle, Q) == pytest.approx(pattern.notch_arcs(band_q, P))
+
+
+def test_a_band_that_has_samples_of_its_own_on_a_profile_is_sewn_to_it_all_the_same(
+    upper: WrinkledUpper,
+) -> None:
+    band = copy(upper.bands[0])
+    band.q_samples = Samples(band.q_samples.parameters, band.q_samples.points)
+    options = PieceSettings(notches_p=NotchRule(at=(20.0, 60.0)))
+    pattern = pattern_of_strips([*upper.strips, band], options)
+    assert pattern.notch_arcs(0, P) == pytest.approx((20.0, 60.0))
+    assert pattern.notch_arcs(1, Q) == pytest.approx((20.0, 60.0))
 
 
 def test_drill_holes_go_into_the_wrinkle_only(upper: WrinkledUpper) -> None:

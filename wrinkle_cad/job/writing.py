@@ -130,10 +130,10 @@ def _notch_parts(made: Made) -> Iterator[Part]:
     seen: set[int] = set()
     for index, strip in enumerate(made.strips):
         for side, rail in enumerate(_RAILS):
-            samples = strip.p_samples if rail == "P" else strip.q_samples
-            if id(samples) in seen:
+            own = strip.p if rail == "P" else strip.q
+            if id(own) in seen:
                 continue
-            seen.add(id(samples))
+            seen.add(id(own))
             arcs = made.pattern.notch_arcs(index, side)
             # The rail of a band that no wrinkle has is the edge of the opening.
             place = "opening" if strip.role == "band" else rail

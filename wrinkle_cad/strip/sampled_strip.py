@@ -19,11 +19,11 @@ class SampledStrip(Protocol):
 
     @property
     def p_samples(self) -> Samples:
-        """The samples of its rail P; a strip sewn to that rail has the same object."""
+        """The samples of its rail P."""
 
     @property
     def q_samples(self) -> Samples:
-        """The samples of its rail Q, likewise."""
+        """The samples of its rail Q."""
 
     @property
     def triangulation(self) -> Triangulation:

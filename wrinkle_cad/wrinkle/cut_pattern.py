@@ -34,6 +34,18 @@ class UnrolledStrip(SampledStrip, Protocol):
     """What a pattern needs of a strip."""
 
     @property
+    def p(self) -> object:
+        """Its rail P; a strip sewn to that rail has the same object."""
+
+    @property
+    def q(self) -> object:
+        """Its rail Q, likewise."""
+
+    @property
+    def role(self) -> str:
+        """What it is for: ``strip``, or ``band`` between a strip and an upper."""
+
+    @property
     def unrolling(self) -> Unrolling:
         """The strip in the plane."""
 
@@ -314,10 +326,10 @@ def _settings_by_strip(
             chosen,
             notches_p=replace(p_rule, partner_corners=tuple(corners[p_rail])),
             notches_q=replace(q_rule, partner_corners=tuple(corners[q_rail])),
-            drill_holes=() if shared else chosen.drill_holes,
+            drill_holes=() if strip.role == "band" else chosen.drill_holes,
         )
 
 
 def _rails(strip: UnrolledStrip) -> tuple[int, int]:
-    # Strips that share a rail share its samples: one sampling per directrix.
-    return id(strip.p_samples), id(strip.q_samples)
+    # Not by its samples: a band has more of them where a face would be folded.
+    return id(strip.p), id(strip.q)

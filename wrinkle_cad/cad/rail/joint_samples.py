@@ -118,7 +118,6 @@ def met_at_ends(
         points[0][at], points[1][at], is_moved = one, one, True
     if not is_moved:
         return p, q
-    # Two strips that are sewn together know it by the samples that they share.
     moved = (type(p)(p.parameters, points[0]), type(q)(q.parameters, points[1]))
     return p if keeps[0] else moved[0], q if keeps[1] else moved[1]
 
