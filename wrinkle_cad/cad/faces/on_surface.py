@@ -35,13 +35,10 @@ def on_ruling(shape: PoleCurve, u: float, base: Floats, apex: Floats) -> Geom2d_
 
 
 def put_on_face(
-    edge: TopoDS_Edge,
-    curve: Geom2d_Line | Geom2d_BSplineCurve,
-    face: TopoDS_Face,
-    tolerance: float = settings.CONFUSION,
+    edge: TopoDS_Edge, curve: Geom2d_Line | Geom2d_BSplineCurve, face: TopoDS_Face
 ) -> None:
-    """Tells an edge where it lies on the surface of a face, to within a tolerance in mm."""
-    BRep_Builder().UpdateEdge(edge, curve, face, tolerance)
+    """Tells an edge where it lies on the surface of a face."""
+    BRep_Builder().UpdateEdge(edge, curve, face, settings.CONFUSION)
 
 
 def degenerated_edge(
