@@ -35,14 +35,17 @@ def sources(others: list[Path]) -> list[Path]:
     return weighted(originals([EXAMPLES]), others)
 
 
-def test_200_damaged_files_end_as_done_or_as_one_line(tmp_path: Path, others: list[Path]) -> None:
+@pytest.mark.parametrize("count", [60, pytest.param(200, marks=pytest.mark.slow)])
+def test_damaged_files_end_as_done_or_as_one_line(
+    tmp_path: Path, others: list[Path], count: int
+) -> None:
     # The example that is done fastest: uppers are carved and stitched, which takes seconds.
     quick = weighted(originals([EXAMPLES / "vamp_strip"]), others)
-    figures, _ = run(tmp_path, 200, 1, quick, timeout_s=20.0)
+    figures, _ = run(tmp_path, count, 1, quick, timeout_s=20.0)
     assert not figures.bugs
-    assert figures.done + figures.failures.total() == 200
+    assert figures.done + figures.failures.total() == count
     assert figures.done > 0, "some damage is harmless"
-    assert figures.failures["InputError"] > 100, "most damage is told"
+    assert figures.failures["InputError"] > count / 2, "most damage is told"
 
 
 @pytest.mark.slow

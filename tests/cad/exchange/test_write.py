@@ -155,6 +155,7 @@ print(hashlib.sha256(done.get("a", b"")).hexdigest())
 """
 
 
+@pytest.mark.slow
 def test_the_same_bytes_come_from_any_process_and_any_order_of_jobs() -> None:
     outputs = [
         subprocess.run(
