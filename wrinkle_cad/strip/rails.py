@@ -20,6 +20,7 @@ from wrinkle_cad.settings import (
 from .curve.nearest import nearest_on_polyline
 from .curve.polyline import polyline_length
 from .portable import dot
+from .runs import runs_of
 
 Floats = npt.NDArray[np.float64]
 
@@ -201,9 +202,5 @@ def _outside_share(points: Floats, line: Floats) -> float:
 
 def _longest_run(marked: npt.NDArray[np.bool_]) -> tuple[int, int]:
     """First and last index of the longest run of True; (0, -1) if there is none."""
-    edges = np.flatnonzero(np.diff(np.concatenate(([False], marked, [False]))))
-    if edges.size == 0:
-        return 0, -1
-    starts, stops = edges[::2], edges[1::2]
-    longest = int(np.argmax(stops - starts))
-    return int(starts[longest]), int(stops[longest]) - 1
+    first, stop = max(runs_of(marked), key=lambda run: run[1] - run[0], default=(0, 0))
+    return first, stop - 1

@@ -22,6 +22,7 @@ from wrinkle_cad.errors import InputError
 from wrinkle_cad.strip.curve.polyline import arc_lengths, row_lengths
 from wrinkle_cad.strip.curve.sampling import Samples
 from wrinkle_cad.strip.rulings.held import Held
+from wrinkle_cad.strip.runs import runs_of
 from wrinkle_cad.strip.triangulation import Triangulation
 
 from .options import StripSettings
@@ -232,8 +233,7 @@ def _runs(points: Floats, ends: Places, *, is_ring: bool, is_cut: bool) -> list[
     if len(points) == 1:
         return [(0, 0)]
     inside = _inside(points, ends, is_ring=is_ring, is_cut=is_cut)
-    edges = np.flatnonzero(np.diff(np.concatenate(([False], inside, [False])).astype(np.int8)))
-    return [(int(a), int(b) - 1) for a, b in zip(edges[::2], edges[1::2], strict=True)]
+    return [(first, stop - 1) for first, stop in runs_of(inside)]
 
 
 def _bridge_at(p: Floats, q: Floats, places: Places, is_cut: bool) -> tuple[int, int]:

@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 from wrinkle_cad.strip.portable import dot
 from wrinkle_cad.strip.rulings.family import RulingFamily
 from wrinkle_cad.strip.rulings.rail_curve import RailCurve
+from wrinkle_cad.strip.rulings.secants import bracketed_secants
 from wrinkle_cad.strip.rulings.smooth_path import PatchRun
 from wrinkle_cad.strip.triangulation import Triangulation
 
@@ -171,22 +172,11 @@ def _zero(points: Floats, low: Floats, high: Floats, ends: Ends) -> Floats:
         start, _, across = ends(place)
         return dot(points - start, across)
 
-    f_low, f_high = off(low), off(high)
-    side = np.zeros(len(points))
-    at = low.copy()
-    for _ in range(ROUNDS):
-        fall = f_low - f_high
-        share = np.where(fall != 0.0, f_low / np.where(fall != 0.0, fall, 1.0), 0.5)
-        before, at = at, low + (high - low) * np.clip(share, 0.0, 1.0)
+    at = low
+    for place, _ in bracketed_secants(off, low, high, (off(low), off(high)), ROUNDS):
+        before, at = at, place
         if not (np.abs(at - before) > 4.0 * np.finfo(np.float64).eps).any():
             break
-        f_at = off(at)
-        # The Illinois rule: an end that stays counts half.
-        upward = f_at * f_low > 0.0
-        f_high = np.where(upward, np.where(side > 0.0, f_high / 2.0, f_high), f_at)
-        f_low = np.where(upward, f_at, np.where(side < 0.0, f_low / 2.0, f_low))
-        low, high = np.where(upward, at, low), np.where(upward, high, at)
-        side = np.where(upward, 1.0, -1.0)
     return at
 
 

@@ -9,6 +9,7 @@ exactly, neither rail runs back, and either may stand still while the other move
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import partial
 from typing import Final
 
 import numpy as np
@@ -17,6 +18,7 @@ import numpy.typing as npt
 from .pairing import FAN_P, FAN_Q, RULED
 from .pieces import Piece
 from .rail_curve import RailCurve
+from .secants import bracketed_secants
 from .stations import twists
 from .surface import RuledStrip
 
@@ -202,22 +204,12 @@ def _exact(whole: _Share, place: Floats, ahead: Floats, reach: Floats) -> tuple[
     low, high = ahead - reach, ahead + reach
     f_low, f_high = whole.twist(place, low), whole.twist(place, high)
     sure = (f_low * f_high < 0.0) & (np.abs(f_high - f_low) > UNSURE)
-    a, b, f_a, f_b = low.copy(), high.copy(), f_low.copy(), f_high.copy()
-    found, side = ahead.copy(), np.zeros(len(place))
-    for _ in range(SECANTS):
-        fall = f_a - f_b
-        share = np.where(fall != 0.0, f_a / np.where(fall != 0.0, fall, 1.0), 0.5)
-        at = a + (b - a) * np.clip(share, 0.0, 1.0)
-        f_at = whole.twist(place, at)
+    found = ahead
+    twist = partial(whole.twist, place)
+    for at, f_at in bracketed_secants(twist, low, high, (f_low, f_high), SECANTS):
         found = np.where(sure, at, found)
         if not (np.abs(f_at[sure]) > NO_TWIST).any():
             break
-        # The Illinois rule: an end that stays counts half.
-        upward = f_at * f_a > 0.0
-        f_b = np.where(upward, np.where(side == 1.0, f_b / 2.0, f_b), f_at)
-        f_a = np.where(upward, f_at, np.where(side == -1.0, f_a / 2.0, f_a))
-        a, b = np.where(upward, at, a), np.where(upward, b, at)
-        side = np.where(upward, 1.0, -1.0)
     sure &= _is_alike(found - low, high - found, np.abs(f_low), np.abs(f_high))
     found[0], found[-1] = ahead[0], ahead[-1]
     sure[0] = sure[-1] = True

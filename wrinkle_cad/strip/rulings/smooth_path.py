@@ -16,6 +16,7 @@ import numpy.typing as npt
 
 from wrinkle_cad.settings import PLANE_GAP
 from wrinkle_cad.strip.curve.sampling import Samples
+from wrinkle_cad.strip.runs import runs_of
 from wrinkle_cad.strip.triangulation import P_STEP, Q_STEP, Triangulation, measured, triangulate
 
 from .family import RulingFamily, family_of
@@ -155,19 +156,13 @@ def _exact_parts(ruled: RuledStrip, piece: Piece, *, is_whole: bool) -> list[Pie
         ]
     twist = np.abs(ruled.sheet.twist[piece.first : piece.last]).max(axis=1)
     is_exact = twist <= EXACT
-    for first, last in _runs(~is_exact):
+    for first, last in runs_of(~is_exact):
         if _is_short(ruled, piece.first + first, piece.first + last):
             is_exact[first:last] = True
     return [
         Piece("torsal" if is_exact[first] else "gap", piece.first + first, piece.first + last, None)
-        for first, last in sorted((*_runs(is_exact), *_runs(~is_exact)))
+        for first, last in sorted((*runs_of(is_exact), *runs_of(~is_exact)))
     ]
-
-
-def _runs(chosen: Bools) -> list[tuple[int, int]]:
-    """Where runs of chosen ones begin, and where they end (not included)."""
-    edges = np.flatnonzero(np.diff(np.concatenate(([False], chosen, [False]))))
-    return [(int(first), int(last)) for first, last in edges.reshape(-1, 2)]
 
 
 def _patches(
