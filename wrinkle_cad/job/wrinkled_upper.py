@@ -11,7 +11,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from wrinkle_cad import settings
+from wrinkle_cad.cad.upper.options import WaveSettings
 from wrinkle_cad.errors import Finding
+from wrinkle_cad.options.option import options_of
 from wrinkle_cad.wrinkle.facing import faces_away
 from wrinkle_cad.wrinkle.grain import Stock
 from wrinkle_cad.wrinkle.triangulated_strip import TriangulatedStrip
@@ -229,8 +231,7 @@ def _opens_alike(request: CarveRequest, other: CarveRequest) -> bool:
 
 
 def _waves_of(job: Job) -> tuple[object, ...]:
-    drawn = (job.waves, job.height, job.phase_deg, job.fade, job.side)
-    return (*drawn, job.shape, job.lean_deg, job.seed, job.amplitude)
+    return tuple(getattr(job, name) for name in options_of(WaveSettings))
 
 
 def _wrinkle_in(job: Job, opening: Opening, given: StripInput) -> WrinkleStrip:

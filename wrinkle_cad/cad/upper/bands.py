@@ -8,7 +8,7 @@ opening; anywhere else that would leave a slit.
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import partial
 from typing import Protocol
 
@@ -122,51 +122,30 @@ def bands_of(opening: Opening, strip: StripLike, tolerance: float) -> Iterator[B
     Raises:
         InputError: as ``make_band``.
     """
-    for i, (profile, samples) in enumerate(
-        ((strip.p, strip.p_samples), (strip.q, strip.q_samples))
-    ):
-        band = make_band(
-            opening,
-            i,
-            profile,
-            samples,
-            tolerance=tolerance,
-            price=strip.triangulation.price,
-            is_smooth=strip.surface == "smooth",
-        )
+    for i in range(2):
+        band = make_band(opening, i, strip, tolerance)
         if band is not None:
-            yield replace(band, name=band_name(strip.name, band.name))
+            yield band
 
 
-def make_band(
-    opening: Opening,
-    i: int,
-    profile: Directrix,
-    samples: Samples,
-    *,
-    tolerance: float,
-    price: float | None = None,
-    is_smooth: bool = False,
-) -> Band | None:
+def make_band(opening: Opening, i: int, strip: StripLike, tolerance: float) -> Band | None:
     """Returns the band between one side of an opening and a profile, None if they coincide.
 
     It lies between its rails as the wrinkle does between P and Q, so that all strips of one opening
-    face the same way.
+    face the same way. Its price for an invalid bridge is the wrinkle's, and the default one where
+    that has none: a band that folds to be more developable is of no use.
 
     Args:
         opening: what was carved.
         i: 0 for the side along P, 1 for that along Q.
-        profile: the wrinkle's rail along that side.
-        samples: of the profile.
+        strip: the wrinkle, whose rail along that side is the profile.
         tolerance: mm; chords of the side.
-        price: of the wrinkle, for an invalid bridge more (triangulate); the default one when None:
-            a band that folds to be more developable is of no use.
-        is_smooth: whether it is made of smooth pieces, like the wrinkle.
 
     Raises:
         InputError: the band has no width somewhere between its ends, or folds over.
     """
-    name = "PQ"[i]
+    name, price = "PQ"[i], strip.triangulation.price
+    profile, samples = (strip.q, strip.q_samples) if i else (strip.p, strip.p_samples)
     side = side_curve(opening.q_edges if i else opening.p_edges, f"opening along {name}")
     parameters = np.linspace(*profile.interval, settings.BAND_CHECKS)
     gaps = distances_from(profile.point_at(parameters), side)
@@ -181,14 +160,15 @@ def make_band(
     )
     _check_folds(triangulation, opening, i, width)
     smooth = None
-    if is_smooth:
+    if strip.surface == "smooth":
         ruled = exact_surface(*rails, *sampled, triangulation)
         smooth = smooth_surface(f"the band along {name}", rails, sampled, triangulation, ruled)
     if smooth is not None and smooth.made is not None:
         shell = smooth.made[0]
     else:
         shell = build_shell(triangulation, *rails, *sampled, settings.SURFACE)
-    return Band(name, *rails, *sampled, triangulation, shell, width, smooth)
+    own = band_name(strip.name, name)
+    return Band(own, *rails, *sampled, triangulation, shell, width, smooth)
 
 
 def _searched(

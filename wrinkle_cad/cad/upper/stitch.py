@@ -26,7 +26,7 @@ from wrinkle_cad.strip.curve.polyline import row_lengths
 from wrinkle_cad.strip.portable import norm
 from wrinkle_cad.strip.ways import unused_text
 
-from .bands import Band, StripLike, band_name, check_beside, check_sewable, make_band
+from .bands import Band, StripLike, check_beside, check_sewable, make_band
 from .border_check import compared_border
 from .carve import carve_shapes
 from .drawing import upper_drawing
@@ -278,8 +278,7 @@ def _all_faces(
     faces = faces_of(openings[-1].body_shape)
     parts, bands = [BODY] * len(faces), list[Band]()
     for opening, strip in zip(openings, strips, strict=True):
-        name, price = strip.name, strip.triangulation.price
-        is_smooth = strip.surface == "smooth"
+        name = strip.name
         pieces: list[tuple[str, Sequence[TopoDS_Face]]] = [(name, faces_of(strip.topods_shell()))]
         ends = []
         for i, (edges, profile, samples) in enumerate(
@@ -293,11 +292,8 @@ def _all_faces(
             else:
                 ends.append(_side_ends(edges, profile, "PQ"[i]))
                 _check_reach(strip, ends[-1], profile)
-            band = make_band(
-                opening, i, profile, samples, tolerance=tolerance, price=price, is_smooth=is_smooth
-            )
+            band = make_band(opening, i, strip, tolerance)
             if band is not None:
-                band = replace(band, name=band_name(name, band.name))
                 bands.append(band)
                 pieces.append((band.name, faces_of(band.shell)))
         both_ends = ((0, opening.start_edges), (1, opening.end_edges)) if len(ends) == 2 else ()
