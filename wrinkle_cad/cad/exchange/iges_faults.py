@@ -13,7 +13,7 @@ from typing import Final
 
 from wrinkle_cad import settings
 
-from .iges_names import Entity, entities_of
+from .iges_names import Entity
 
 _NUMBER: Final = re.compile(rb"[-+]?(?:\d+\.?\d*|\.\d+)(?:[EeDd][-+]?\d{1,3})?")
 _WHOLE: Final = re.compile(rb"[-+]?\d{1,9}")
@@ -45,16 +45,12 @@ _DEPTH: Final = 12
 """Steps from an entity to itself that are looked for."""
 
 
-def records_fault(text: bytes) -> str | None:
-    """Returns what is wrong with the directory and the parameters of a file, or None.
+def sequence_fault(text: bytes) -> str | None:
+    """Returns what is wrong with the order of a file's records and with its directory, or None.
 
     Args:
         text: an IGES file as ``plain_text`` returns it, its sections as long as they say.
     """
-    return _sequence_fault(text) or _entities_fault(dict(entities_of(text)))
-
-
-def _sequence_fault(text: bytes) -> str | None:
     lines = [line for line in text.split(b"\n") if len(line) > 72]
     for section in (b"D", b"P"):
         rows = [line for line in lines if line[72:73] == section]
@@ -78,7 +74,12 @@ def _sequence_fault(text: bytes) -> str | None:
     return None
 
 
-def _entities_fault(entities: Mapping[int, Entity]) -> str | None:
+def entities_fault(entities: Mapping[int, Entity]) -> str | None:
+    """Returns what is wrong with the parameters of a file's entities, or None.
+
+    Args:
+        entities: by directory entry, as ``entities_of`` yields them.
+    """
     for number, entity in entities.items():
         fault = _entity_fault(entity, entities)
         if fault is not None:

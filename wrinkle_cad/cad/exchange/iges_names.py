@@ -42,13 +42,12 @@ class Entity(NamedTuple):
     """Its parameters, the kind first."""
 
 
-def item_names(text: bytes) -> ItemNames:
+def item_names(entities: Mapping[int, Entity]) -> ItemNames:
     """Returns the names of the entities of a file by their directory entry, and what it hides.
 
     Args:
-        text: an IGES file as ``plain_text`` returns it.
+        entities: by directory entry, as ``entities_of`` yields them.
     """
-    entities = dict(entities_of(text))
     levels = {
         entity.level: _text(entity.fields[3])
         for entity in entities.values()

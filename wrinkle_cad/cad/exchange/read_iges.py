@@ -20,8 +20,8 @@ from wrinkle_cad.cad.kernel.steps import KERNEL_ERRORS
 from wrinkle_cad.files.names import error_words
 
 from .collect import listed
-from .iges_faults import records_fault
-from .iges_names import fields_of, item_names
+from .iges_faults import entities_fault, sequence_fault
+from .iges_names import entities_of, fields_of, item_names
 from .naming import Marker, found_in
 from .shapes import CadFile
 from .sniff import IGES, Source
@@ -57,13 +57,13 @@ def read(source: Source, unit: str | None) -> CadFile:
     """
     text = plain_text(source.content)
     _check_records(source, text)
-    fault = records_fault(text)
-    if fault is not None:
-        raise source.fail(f"damaged: {fault}. Export it again.")
+    _fail_on(source, sequence_fault(text))
+    entities = dict(entities_of(text))
+    _fail_on(source, entities_fault(entities))
     declared = (_declared_unit(text),)
     check_unit(source, declared, unit)
     leaves, number_of = _leaves(source, text)
-    shapes = listed(source, found_in(leaves, number_of, item_names(text)), 1.0)
+    shapes = listed(source, found_in(leaves, number_of, item_names(entities)), 1.0)
     if not shapes:
         raise source.fail("no geometry: no curve, face or solid in it. Export it again.")
     words = unit_words(declared, unit)
@@ -94,6 +94,11 @@ def _declared_unit(text: bytes) -> str:
         word = fields[14].split(b"H", 1)[-1].strip().decode("ascii", "replace").upper()
         return _NAMES.get(word, word.lower())
     return _UNITS.get(number, "unknown unit")
+
+
+def _fail_on(source: Source, fault: str | None) -> None:
+    if fault is not None:
+        raise source.fail(f"damaged: {fault}. Export it again.")
 
 
 def _global_fields(text: bytes) -> list[bytes]:
