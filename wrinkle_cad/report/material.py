@@ -66,8 +66,8 @@ def find_material(name_or_file: str) -> Material:
     """
     if name_or_file.lower().endswith(".toml"):
         return read_material(Path(name_or_file))
-    found = material_named(name_or_file, None)
-    if found in packaged_materials():
+    found = _packaged(name_or_file)
+    if found is not None:
         return found
     known = ", ".join(material.name for material in packaged_materials()[:_LISTED])
     raise InputError(
@@ -88,10 +88,12 @@ def material_named(name: str, thickness_mm: float | None) -> Material:
     >>> material_named("Slate", 6.0).smallest_bend_radius_mm is None
     True
     """
-    for material in packaged_materials():
-        if material.name.casefold() == name.casefold():
-            return material
-    return Material(name=name, thickness_mm=thickness_mm)
+    return _packaged(name) or Material(name=name, thickness_mm=thickness_mm)
+
+
+def _packaged(name: str) -> Material | None:
+    same = (each for each in packaged_materials() if each.name.casefold() == name.casefold())
+    return next(same, None)
 
 
 @cache

@@ -7,6 +7,9 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
+from .curve.polyline import row_lengths
+from .portable import dot
+
 Floats = NDArray[np.float64]
 
 _STIFFNESS: Final = 1e-5
@@ -35,7 +38,7 @@ def mitred_directions(points: Floats, triangles: NDArray[np.int64]) -> Floats:
         np.add.at(products, triangles[:, corner], normals[:, :, None] * normals[:, None, :])
         np.add.at(sums, triangles[:, corner], normals)
         np.add.at(counts, triangles[:, corner], 1.0)
-    mean = sums / np.maximum(_lengths(sums), 1e-12)[:, None]
+    mean = sums / np.maximum(row_lengths(sums), 1e-12)[:, None]
     held = (_STIFFNESS * counts)[:, None]
     return _solved(products + held[:, :, None] * np.eye(3), sums + held * mean)
 
@@ -44,20 +47,12 @@ def triangle_normals(points: Floats, triangles: NDArray[np.int64]) -> Floats:
     """Returns (t, 3) unit normals; zeros for a triangle without area."""
     corners = points[triangles]
     across = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
-    return np.asarray(across / np.maximum(_lengths(across), 1e-300)[:, None])
+    return np.asarray(across / np.maximum(row_lengths(across), 1e-300)[:, None])
 
 
 def _solved(matrix: Floats, right: Floats) -> Floats:
     """Cramer's rule for (k, 3, 3) and (k, 3): the same on every processor."""
     a, b, c = np.moveaxis(matrix, 2, 0)
     across = (np.cross(b, c), np.cross(c, a), np.cross(a, b))
-    determinant = _inner(a, across[0])
-    return np.stack([_inner(right, row) / determinant for row in across], axis=1)
-
-
-def _inner(one: Floats, other: Floats) -> Floats:
-    return np.asarray(one[:, 0] * other[:, 0] + one[:, 1] * other[:, 1] + one[:, 2] * other[:, 2])
-
-
-def _lengths(vectors: Floats) -> Floats:
-    return np.sqrt(_inner(vectors, vectors))
+    determinant = dot(a, across[0])
+    return np.stack([dot(right, row) / determinant for row in across], axis=1)

@@ -23,6 +23,8 @@ def exact_surface(
     q_samples: Samples,
     triangulation: Triangulation,
     held: Held = NOTHING_HELD,
+    *,
+    is_cut: bool = False,
 ) -> RuledStrip:
     """Returns the surface between two directrices that their triangulation approximates.
 
@@ -33,44 +35,9 @@ def exact_surface(
         q_samples: the samples of Q.
         triangulation: of these samples.
         held: what was asked of the rulings, in parameters of the directrices.
+        is_cut: take a closed strip from its first bridge to its last, as if it were open. That
+            bridge, where it is cut, then counts as a ruling, if only nearly one.
     """
-    is_closed = p.is_closed and q.is_closed
-    return _ruled(p, q, p_samples, q_samples, triangulation, held, is_closed=is_closed)
-
-
-def surface_from_cut(
-    p: Directrix,
-    q: Directrix,
-    p_samples: Samples,
-    q_samples: Samples,
-    triangulation: Triangulation,
-    held: Held = NOTHING_HELD,
-) -> RuledStrip:
-    """Returns the surface of a strip from its first bridge to its last, though it may be closed.
-
-    That bridge, where a closed strip is cut, then counts as a ruling, if only nearly one.
-
-    Args:
-        p: as for ``exact_surface``, and so all others.
-        q: likewise.
-        p_samples: likewise.
-        q_samples: likewise.
-        triangulation: likewise.
-        held: likewise.
-    """
-    return _ruled(p, q, p_samples, q_samples, triangulation, held, is_closed=False)
-
-
-def _ruled(
-    p: Directrix,
-    q: Directrix,
-    p_samples: Samples,
-    q_samples: Samples,
-    triangulation: Triangulation,
-    held: Held,
-    *,
-    is_closed: bool,
-) -> RuledStrip:
     rails = (rail_curve(p), rail_curve(q))
     counts = (len(triangulation.p), len(triangulation.q))
     at_p, at_q = (
@@ -80,6 +47,7 @@ def _ruled(
         )
     )
     # A closed strip's triangulation is cut open; its rails start where it is cut.
+    is_closed = p.is_closed and q.is_closed and not is_cut
     rule = rule_closed_strip if is_closed else rule_strip
     return rule(*rails, (at_p, at_q), triangulation.max_lean, held)
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Final
 from wrinkle_cad.errors import CadError, Finding, InputError, Severity
 from wrinkle_cad.strip.rulings.held import NOTHING_HELD, Held
 
-from .exact_surface import rail_curve, surface_from_cut
+from .exact_surface import exact_surface, rail_curve
 
 if TYPE_CHECKING:
     from OCP.TopoDS import TopoDS_Shell
@@ -61,7 +61,7 @@ def smooth_surface(
     if reason:
         return SmoothSurface(None, (_made_of_cones(name, reason),))
     if all(rail.is_closed for rail in rails):
-        ruled = surface_from_cut(*rails, *samples, triangulation, held)
+        ruled = exact_surface(*rails, *samples, triangulation, held, is_cut=True)
     curves = (rail_curve(rails[0]), rail_curve(rails[1]))
     try:
         made = build_smooth_shell(ruled, curves, triangulation, rails, samples)

@@ -14,6 +14,7 @@ from OCP.TopExp import TopExp_Explorer
 from OCP.TopoDS import TopoDS_Edge, TopoDS_Iterator, TopoDS_Shape, TopoDS_Wire
 
 from .curves import edge_curve
+from .evaluation import PoleCurve
 from .splines import curve_arrays
 from .steps import kernel_step
 from .topology import as_edge, wires_of
@@ -59,14 +60,14 @@ def carried(edges: Sequence[TopoDS_Edge], carry: Carry, tolerance: float) -> Flo
 
 
 def _carried_edge(edge: TopoDS_Edge, carry: Carry, tolerance: float) -> Floats:
-    curve = edge_curve(edge)
-    knots = curve_arrays(curve)[2]
+    drawn = edge_curve(edge)
+    poles, weights, knots, multiplicities = curve_arrays(drawn)
+    curve = PoleCurve(drawn.Degree(), knots, multiplicities, poles, weights)
     share = np.arange(FIRST_POINTS) / FIRST_POINTS
     at = np.append((knots[:-1, None] + np.diff(knots)[:, None] * share).ravel(), knots[-1])
 
     def points(parameters: Floats) -> Floats:
-        found = [curve.Value(float(u)) for u in parameters]
-        return carry(np.array([(point.X(), point.Y(), point.Z()) for point in found]))
+        return carry(curve.point_at(parameters))
 
     moved = points(at)
     for _ in range(HALVINGS):

@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 
 from wrinkle_cad import settings
 from wrinkle_cad.strip.portable import cos, sin
+from wrinkle_cad.strip.rulings.vectors import units
 
 from .opening_outline import Rail
 
@@ -121,12 +122,7 @@ def frame_at(rail: Rail, across: Floats, shares: Floats) -> Frame:
     found = rest * rest * ((1.0 + 2.0 * part) * rows[i] + part * step * slopes[i])
     found += part * part * ((1.0 + 2.0 * rest) * rows[i + 1] - rest * step * slopes[i + 1])
     points, normals, sideways = found[:, :3], found[:, 3:6], found[:, 6:]
-    return Frame(points, _unit(normals), _unit(sideways))
-
-
-def _unit(vectors: Floats) -> Floats:
-    x, y, z = vectors.T
-    return np.asarray(vectors / np.sqrt(x * x + y * y + z * z)[:, None])
+    return Frame(points, units(normals), units(sideways))
 
 
 def folds(
