@@ -39,6 +39,16 @@ def add_option_arguments(parser: argparse.ArgumentParser, settings_class: type[A
             _add_flag(add, field)
 
 
+def add_job_argument(parser: argparse.ArgumentParser, name: str) -> None:
+    """Adds the flag of one setting of a job; it is None where the flag was not given.
+
+    Args:
+        parser: receives the flag.
+        name: of the setting.
+    """
+    _add_flag(parser.add_argument, options_of(Job)[name])
+
+
 def job_keywords(given: argparse.Namespace, environment: Mapping[str, str]) -> dict[str, Any]:
     """The settings of a job among the arguments given; None where a flag was not given.
 

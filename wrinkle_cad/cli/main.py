@@ -23,7 +23,7 @@ from wrinkle_cad.errors import WrinkleError
 from wrinkle_cad.files.names import error_words, printable
 
 from .batch_arguments import add_batch_arguments, add_limit_arguments
-from .job_arguments import add_job_arguments, job_keywords
+from .job_arguments import add_job_argument, add_job_arguments, job_keywords
 from .signals import ended_in_order
 from .streams import complain, flushed, give_up_stdout, open_streams
 
@@ -124,6 +124,7 @@ def _add_inspect(commands: Any) -> None:
     for flag in ("--p", "--q", "--upper"):
         inspect.add_argument(flag, metavar="NAME|INDEX", help="as for run: shows what it takes")
     inspect.add_argument("--unit", choices=get_args(settings.Unit))
+    add_job_argument(inspect, "join")
     inspect.add_argument("--json", action="store_true", help="print one JSON value")
     add_limit_arguments(inspect)
     _add_debug(inspect)
@@ -241,7 +242,14 @@ def _inspect(given: argparse.Namespace) -> int:
 
     from .screen import print_inspection
 
-    question = partial(inspect_file, unit=given.unit, p=given.p, q=given.q, upper=given.upper)
+    question = partial(
+        inspect_file,
+        unit=given.unit,
+        p=given.p,
+        q=given.q,
+        upper=given.upper,
+        join=given.join or 0.0,
+    )
     inspection = answer_alone(given.input, question, **_limits(given))
     if given.json:
         print(json.dumps(inspection.as_json(), ensure_ascii=False, indent=2))

@@ -61,6 +61,7 @@ def inspect_file(
     p: str | None = None,
     q: str | None = None,
     upper: str | None = None,
+    join: float = 0.0,
 ) -> Inspection:
     """Reads a file and tells what a run would take from it.
 
@@ -70,6 +71,7 @@ def inspect_file(
         p: name or index of directrix P, as for a run.
         q: likewise of Q.
         upper: likewise of the upper surface.
+        join: mm; gaps between the edges of a rail that a run would close.
 
     Raises:
         InputError: the file cannot be read.
@@ -80,7 +82,7 @@ def inspect_file(
     file = read_cad(path, unit=unit)
     chosen: Chosen | None = None
     try:
-        chosen = choose_inputs(file, p=p, q=q, upper=upper)
+        chosen = choose_inputs(file, p=p, q=q, upper=upper, join=join)
         reasons = chosen.reasons
     except InputError as error:
         reasons = (str(error),)
@@ -96,8 +98,8 @@ def _taken_by_index(chosen: Chosen) -> dict[int, str]:
     taken = {}
     for strip in chosen.strips:
         prefix = "" if strip.name == settings.STRIP_NAME else f"{strip.name}:"
-        taken[strip.p.index] = f"{prefix}P"
-        taken[strip.q.index] = f"{prefix}Q"
+        for rail, role in ((strip.p, "P"), (strip.q, "Q")):
+            taken.update(dict.fromkeys((rail.index, *rail.parts), f"{prefix}{role}"))
     if chosen.upper is not None:
         taken[chosen.upper.index] = "upper"
     return taken

@@ -57,7 +57,7 @@ def read_chosen(job: Job, kinds: tuple[str, ...]) -> tuple[CadFile, Chosen]:
         from wrinkle_cad.cad.exchange.read import read_cad
     check_outputs_are_ours(job, kinds)
     file = read_cad(job.input, unit=job.unit)
-    return file, choose_inputs(file, p=job.p, q=job.q, upper=job.upper)
+    return file, choose_inputs(file, p=job.p, q=job.q, upper=job.upper, join=job.join)
 
 
 def rails_of(job: Job, given: StripInput) -> tuple[Directrix, Directrix]:

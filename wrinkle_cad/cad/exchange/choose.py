@@ -16,6 +16,7 @@ from typing import Final
 from wrinkle_cad import settings
 from wrinkle_cad.errors import InputError
 
+from .joined_curves import gap_hint, joined_curves
 from .rails_by_name import rails_by_strip
 from .shapes import RAILS, UPPER, CadFile, NamedShape, rail_role
 
@@ -47,7 +48,12 @@ class Chosen:
 
 
 def choose_inputs(
-    cad_file: CadFile, *, p: str | None = None, q: str | None = None, upper: str | None = None
+    cad_file: CadFile,
+    *,
+    p: str | None = None,
+    q: str | None = None,
+    upper: str | None = None,
+    join: float = 0.0,
 ) -> Chosen:
     """Chooses the curves of every strip, and the upper.
 
@@ -57,6 +63,7 @@ def choose_inputs(
             strip.
         q: likewise for Q.
         upper: name or index of the upper; a solid is taken only when it is named here.
+        join: mm; candidates for one rail with gaps up to this between their ends are one curve.
 
     Raises:
         InputError: there is no curve, no or more than one possible choice, or a name or index that
@@ -74,11 +81,11 @@ def choose_inputs(
         (['P'], 'upper')
     """
     if p is None and q is None:
-        strips, reasons = _named_strips(cad_file)
+        strips, reasons = _named_strips(cad_file, join)
         if not strips:
-            strips, reasons = _only_two_curves(cad_file)
+            strips, reasons = _only_two_curves(cad_file, join)
     else:
-        strips, reasons = _strip_by_hand(cad_file, p, q)
+        strips, reasons = _strip_by_hand(cad_file, p, q, join)
     surface, why = _upper(cad_file, upper, is_named=_has_convention(cad_file))
     return Chosen(tuple(strips), surface, (*reasons, why))
 
@@ -89,11 +96,11 @@ def _has_convention(cad_file: CadFile) -> bool:
     )
 
 
-def _named_strips(cad_file: CadFile) -> tuple[list[StripInput], list[str]]:
+def _named_strips(cad_file: CadFile, join: float) -> tuple[list[StripInput], list[str]]:
     strips, reasons = [], []
     found = rails_by_strip(cad_file.curves())
     for name, rails in found.items():
-        pair = [_one_rail(cad_file, name, rail, rails[rail]) for rail in RAILS]
+        pair = [_one_rail(cad_file, name, rail, joined_curves(rails[rail], join)) for rail in RAILS]
         strips.append(StripInput(name or settings.STRIP_NAME, *pair))
         of = f" of {name}" if len(found) > 1 else ""
         reasons += [
@@ -125,12 +132,14 @@ def _one_rail(cad_file: CadFile, strip: str, rail: str, fits: list[NamedShape]) 
     raise _fail(
         cad_file,
         f"{len(fits)} curves are called '{wanted}': {_listed(fits)}. Join them to one wire, or"
-        " choose with --p and --q.",
+        f" choose with --p and --q.{gap_hint(fits, 1)}",
     )
 
 
-def _only_two_curves(cad_file: CadFile) -> tuple[list[StripInput], list[str]]:
-    curves = cad_file.curves()
+def _only_two_curves(cad_file: CadFile, join: float) -> tuple[list[StripInput], list[str]]:
+    curves: Sequence[NamedShape] = cad_file.curves()
+    if len(curves) > 2:
+        curves = joined_curves(curves, join)
     if len(curves) != 2:
         raise _wrong_count(cad_file, curves)
     # Whoever gave both a name meant these, not the order that a program writes them in.
@@ -167,17 +176,17 @@ def _wrong_count(cad_file: CadFile, curves: Sequence[NamedShape]) -> InputError:
     return _fail(
         cad_file,
         f"{len(curves)} free curves and none is called P or Q: {_listed(curves)}."
-        " Choose two with --p and --q, or name them.",
+        f" Choose two with --p and --q, or name them.{gap_hint(curves, 2)}",
     )
 
 
 def _strip_by_hand(
-    cad_file: CadFile, p: str | None, q: str | None
+    cad_file: CadFile, p: str | None, q: str | None, join: float
 ) -> tuple[list[StripInput], list[str]]:
-    chosen_p = None if p is None else _picked(cad_file, p, "p")
-    chosen_q = None if q is None else _picked(cad_file, q, "q")
-    rail_p = chosen_p or _counterpart(cad_file, chosen_q, "P")
-    rail_q = chosen_q or _counterpart(cad_file, chosen_p, "Q")
+    chosen_p = None if p is None else _picked(cad_file, p, "p", join)
+    chosen_q = None if q is None else _picked(cad_file, q, "q", join)
+    rail_p = chosen_p or _counterpart(cad_file, chosen_q, "P", join)
+    rail_q = chosen_q or _counterpart(cad_file, chosen_p, "Q", join)
     for rail, option in ((rail_p, "p"), (rail_q, "q")):
         if not rail.is_curve:
             raise _fail(
@@ -185,7 +194,7 @@ def _strip_by_hand(
                 f"--{option} chooses {rail}, a rail is an edge or a wire; found"
                 f" {_listed(cad_file.curves()) or 'no curves'}. Choose one of these.",
             )
-    if rail_p is rail_q:
+    if rail_p.index == rail_q.index:
         raise _fail(cad_file, f"--p and --q both choose {rail_p}. Choose two curves.")
     role = rail_role(rail_p.name)
     name = (role[0] if role else "") or settings.STRIP_NAME
@@ -196,9 +205,10 @@ def _strip_by_hand(
     return [StripInput(name, rail_p, rail_q)], reasons
 
 
-def _counterpart(cad_file: CadFile, other: NamedShape | None, rail: str) -> NamedShape:
+def _counterpart(cad_file: CadFile, other: NamedShape | None, rail: str, join: float) -> NamedShape:
     """Finds the rail that was not chosen: by its name, else as the only other curve."""
-    rest = [curve for curve in cad_file.curves() if curve is not other]
+    taken = () if other is None else (other.index, *other.parts)
+    rest = [curve for curve in cad_file.curves() if curve.index not in taken]
     role = rail_role(other.name) if other is not None else None
     strip = role[0] if role else ""
     named = [
@@ -207,8 +217,8 @@ def _counterpart(cad_file: CadFile, other: NamedShape | None, rail: str) -> Name
         if (found := rail_role(curve.name)) and found[0] == strip and found[1] == rail
     ]
     for fits in (named, rest):
-        if len(fits) == 1:
-            return fits[0]
+        if len(one := joined_curves(fits, join)) == 1:
+            return one[0]
     raise _fail(
         cad_file,
         f"only one rail is chosen; {rail} could be {_listed(rest) or 'none of the shapes'}"
@@ -216,7 +226,7 @@ def _counterpart(cad_file: CadFile, other: NamedShape | None, rail: str) -> Name
     )
 
 
-def _picked(cad_file: CadFile, text: str, option: str) -> NamedShape:
+def _picked(cad_file: CadFile, text: str, option: str, join: float = 0.0) -> NamedShape:
     """Finds the one shape that a name or an index means."""
     shapes = cad_file.shapes
     wanted = text.strip()
@@ -226,6 +236,8 @@ def _picked(cad_file: CadFile, text: str, option: str) -> NamedShape:
     by_case = [shape for shape in shapes if shape.name.casefold() == wanted.casefold()]
     for fits in (by_name, by_index, by_case if wanted else []):
         suited = [shape for shape in fits if shape.is_curve == (option != UPPER)] or fits
+        if option != UPPER and all(shape.is_curve for shape in suited):
+            suited = joined_curves(suited, join)
         if len(suited) == 1:
             return suited[0]
         if suited:

@@ -32,7 +32,21 @@ def chain_edges(edges: Sequence[TopoDS_Edge]) -> list[tuple[int, TopoDS_Shape]]:
         Wires, and edges that meet no other, each with the index of its first edge, in that order.
         Where three or more edges meet, all of them end.
     """
-    nodes = _nodes(edges, settings.RAIL_GAP)
+    chains = edge_chains(edges, settings.RAIL_GAP)
+    return [(min(chain), _joined([edges[i] for i in chain])) for chain in chains]
+
+
+def edge_chains(edges: Sequence[TopoDS_Edge], gap: float) -> list[list[int]]:
+    """Returns which edges follow one another, end to end, where exactly two of them meet.
+
+    Args:
+        edges: in any order and direction.
+        gap: mm; ends no further apart than this meet.
+
+    Returns:
+        Indices of the edges, those of one chain from its one end to its other.
+    """
+    nodes = _nodes(edges, gap)
     at_node: dict[int, list[int]] = defaultdict(list)
     for i, ends in enumerate(nodes):
         for node in ends:
@@ -42,7 +56,7 @@ def chain_edges(edges: Sequence[TopoDS_Edge]) -> list[tuple[int, TopoDS_Shape]]:
     for i in range(len(edges)):
         if i in left:
             chains.append(_chain_through(i, nodes, at_node, left))
-    return [(min(chain), _joined([edges[i] for i in chain])) for chain in chains]
+    return chains
 
 
 def _nodes(edges: Sequence[TopoDS_Edge], gap: float) -> list[tuple[int, int]]:

@@ -78,6 +78,8 @@ class NamedShape:
     """Whether the file says that it is not shown."""
     holders: tuple[Holder, ...] = ()
     """Everything that has a name and holds it, the nearest first, itself included."""
+    parts: tuple[int, ...] = ()
+    """The numbers of the curves that were joined to it; none for a curve of the file."""
 
     @property
     def unit(self) -> str:
@@ -102,7 +104,13 @@ class NamedShape:
         name = f" '{self.name}'" if self.name else ""
         measure = f" {self.measure:.6g} {self.unit}" if self.unit else ""
         hidden = " (hidden)" if self.is_hidden else ""
-        return f"[{self.index}]{name} {self.kind}{measure}{hidden}"
+        joined = f" (joined from {_numbers(self.parts)})" if self.parts else ""
+        return f"[{self.index}]{name} {self.kind}{measure}{hidden}{joined}"
+
+
+def _numbers(parts: tuple[int, ...]) -> str:
+    *others, last = (f"[{part}]" for part in parts)
+    return f"{', '.join(others)} and {last}"
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -24,6 +24,8 @@ from wrinkle_cad.cad.kernel.topology import (
 )
 from wrinkle_cad.errors import InputError
 
+from .seam_edges import check_no_seam
+
 
 def edges_as_drawn(source: object, name: str) -> list[TopoDS_Edge]:
     """Returns the edges of a source.
@@ -34,9 +36,14 @@ def edges_as_drawn(source: object, name: str) -> list[TopoDS_Edge]:
         name: what messages call the rail, at the start of a sentence.
 
     Raises:
-        InputError: there is no curve in it, or something that is none.
+        InputError: there is no curve in it, or something that is none, or the seam of a face.
     """
-    return [edge for shape in shapes_in(source, name) for edge in _edges_in(shape, name)]
+    found: list[TopoDS_Edge] = []
+    for shape, parent in _items_in(source, name):
+        found += _edges_in(shape, name)
+        if shape.ShapeType() == TopAbs_EDGE:
+            check_no_seam(found[-1], parent, name)
+    return found
 
 
 def shapes_in(source: object, name: str) -> list[TopoDS_Shape]:
@@ -49,16 +56,22 @@ def shapes_in(source: object, name: str) -> list[TopoDS_Shape]:
     Raises:
         InputError: something in it is no shape.
     """
+    return [shape for shape, _ in _items_in(source, name)]
+
+
+def _items_in(source: object, name: str) -> list[tuple[TopoDS_Shape, TopoDS_Shape | None]]:
+    """Each shape with what it was taken from, as far as build123d knows that."""
     shape = source if isinstance(source, TopoDS_Shape) else getattr(source, "wrapped", None)
     if isinstance(shape, TopoDS_Shape):
         if shape.IsNull():
             raise InputError(f"{name} is an empty {type(source).__name__}. Pass one with a curve.")
-        return [shape]
+        parent = getattr(getattr(source, "topo_parent", None), "wrapped", None)
+        return [(shape, parent if isinstance(parent, TopoDS_Shape) else None)]
     held = _held_by(source)
     if held == () and held is not source:
         raise InputError(f"{name} is an empty {type(source).__name__}. Draw a curve in it first.")
     if isinstance(held, Iterable) and not isinstance(held, str | bytes):
-        return [shape for item in held for shape in shapes_in(item, name)]
+        return [found for item in held for found in _items_in(item, name)]
     raise InputError(
         f"{name} cannot be of type {type(source).__name__}: pass an edge, a wire, a list of edges"
         " or a (k, 3) array."
