@@ -209,22 +209,76 @@ def test_the_3d_view_turns_zooms_and_returns(page: webdriver.Chrome) -> None:
         stage,
     )
     until(lambda: picture(page, "space").tobytes() != turned, "a nearer view")
-    page.find_element(By.CSS_SELECTOR, ".reset").click()
+    look_from(page, "whole")
     until(lambda: (picture(page, "space") != start).any(axis=2).mean() < 0.02, "the first view")
 
 
-@pytest.mark.parametrize("color_by", ["fold", "twist"])
+def look_from(page: webdriver.Chrome, name: str) -> None:
+    page.find_element(By.CSS_SELECTOR, f"[data-view={name}]").click()
+
+
+def color_by(page: webdriver.Chrome, name: str) -> None:
+    page.execute_script(f"document.querySelector('[name=color-by][value={name}]').click()")
+
+
+def test_the_strips_are_seen_from_each_standpoint(page: webdriver.Chrome) -> None:
+    seen = {picture(page, "space").tobytes()}
+    for name in ("strips", "top", "front", "side"):
+        look_from(page, name)
+        until(lambda: picture(page, "space").tobytes() not in seen, f"another view: {name}")
+        image = picture(page, "space")
+        assert not is_blank(image)
+        edge = np.concatenate((image[0], image[-1], image[:, 0], image[:, -1]))
+        if name != "strips":
+            assert not edge[:, 3].any(), f"{name}: something is cut off by the view's edge"
+        seen.add(image.tobytes())
+
+
+def test_the_surfaces_are_shown_as_leather(page: webdriver.Chrome) -> None:
+    before = picture(page, "space")
+    color_by(page, "leather")
+    until(lambda: picture(page, "space").tobytes() != before.tobytes(), "leather")
+    image = picture(page, "space").astype(int)
+    drawn = image[..., 3] > 250
+    # Brown: red above green above blue; and grained: no two neighbours are of the same tone.
+    assert (image[drawn][:, 0] > image[drawn][:, 2] + 10).mean() > 0.8
+    assert not strip_pixels(before)[~drawn].any()
+    assert errors(page) == []
+    color_by(page, "state")
+    until(lambda: picture(page, "space").tobytes() == before.tobytes(), "the verdict again")
+
+
+def test_bands_are_part_of_the_body_until_they_are_asked_for(
+    browser: webdriver.Chrome, tmp_path: Path
+) -> None:
+    views = [view_of(wavy_rails(), "wrinkle"), view_of(cylinder_rails(), "band", role="band")]
+    open_page(browser, tmp_path / "bands.html", write_page(summary_of(views), views, dome(20)))
+    titles = [box.text for box in browser.find_elements(By.CSS_SELECTOR, "label:has([data-layer])")]
+    assert titles == ["wrinkle", "Bands", "Bridges", "Rails", "upper"]
+    color_by(browser, "fold")
+    wrinkle = np.degrees(np.abs(views[0].triangulation.fold).max())
+    band = np.degrees(np.abs(views[1].triangulation.fold).max())
+
+    def high() -> float:
+        return float(browser.find_element(By.CSS_SELECTOR, ".legend .high").text.rstrip("°"))
+
+    assert high() == pytest.approx(wrinkle, abs=0.06)
+    plain = picture(browser, "space")
+    browser.find_element(By.CSS_SELECTOR, "[data-layer=bands]").click()
+    until(lambda: (picture(browser, "space") != plain).any(), "the bands in color")
+    assert high() == pytest.approx(max(wrinkle, band), abs=0.06)
+
+
+@pytest.mark.parametrize("measure", ["fold", "twist"])
 def test_bridges_are_colored_by_what_is_chosen(
-    page: webdriver.Chrome, strip: StripView, color_by: str
+    page: webdriver.Chrome, strip: StripView, measure: str
 ) -> None:
     before = picture(page, "space")
-    page.execute_script(
-        "document.querySelector(arguments[0]).click()", f"[name=color-by][value={color_by}]"
-    )
+    color_by(page, measure)
     until(lambda: (picture(page, "space") != before).any(axis=2).mean() > 0.005, "other colors")
     high = page.find_element(By.CSS_SELECTOR, ".legend .high").text
     drawn = strip.triangulation
-    angles = drawn.fold if color_by == "fold" else drawn.twist
+    angles = drawn.fold if measure == "fold" else drawn.twist
     assert float(high.rstrip("°")) == pytest.approx(np.degrees(np.abs(angles).max()), abs=0.06)
 
 

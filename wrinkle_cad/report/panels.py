@@ -18,6 +18,14 @@ _COLORS: Final = (
     ("validity", "Validity"),
     ("fold", "Fold angle"),
     ("twist", "Twist"),
+    ("leather", "Leather"),
+)
+_STANDPOINTS: Final = (
+    ("whole", "Whole", "All that is shown"),
+    ("strips", "Strip", "The strips alone"),
+    ("top", "Top", "From above"),
+    ("front", "Front", "Along y"),
+    ("side", "Side", "Against x"),
 )
 _PATTERN_LAYERS: Final = (
     ("cut", "Cut line"),
@@ -105,10 +113,16 @@ def space_panel(strips: Sequence[StripView], body: MeshView | None) -> Element:
         )
         for value, title in _COLORS
     ]
-    layers = [_layer(str(at), view.name) for at, view in enumerate(strips)]
+    layers = [_layer(str(at), view.name) for at, view in enumerate(strips) if view.role != "band"]
+    if len(layers) < len(strips):
+        layers.append(_layer("bands", "Bands", is_on=False))
     layers += [_layer("bridges", "Bridges"), _layer("rails", "Rails")]
     if body is not None:
         layers.append(_layer("body", body.name))
+    standpoints = [
+        node("button", title, type="button", title=hint, data_view=name)
+        for name, title, hint in _STANDPOINTS
+    ]
     return node(
         "section",
         node("div", node("h2", "In space"), node("p", _IDLE, class_="readout"), class_="head"),
@@ -116,13 +130,13 @@ def space_panel(strips: Sequence[StripView], body: MeshView | None) -> Element:
             "div",
             node("canvas", class_="space", aria_label="3-D view: drag to turn, wheel to zoom"),
             node("p", "This browser shows no 3-D graphics (WebGL).", class_="failure"),
+            node("div", *standpoints, class_="standpoints", aria_label="Seen from"),
             class_="stage",
         ),
         node(
             "div",
             node("fieldset", *colors, class_="segments", aria_label="Color by"),
             node("fieldset", node("legend", "Show"), *layers),
-            node("button", "Whole view", type="button", class_="reset"),
             class_="toolbar",
         ),
         _space_legend(),
@@ -130,8 +144,8 @@ def space_panel(strips: Sequence[StripView], body: MeshView | None) -> Element:
     )
 
 
-def _layer(value: str, title: str) -> Element:
-    return node("label", node("input", type="checkbox", data_layer=value, checked=True), title)
+def _layer(value: str, title: str, *, is_on: bool = True) -> Element:
+    return node("label", node("input", type="checkbox", data_layer=value, checked=is_on), title)
 
 
 def _key(tone: str, title: str, kind: str = "") -> Element:

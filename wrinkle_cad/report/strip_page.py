@@ -8,6 +8,9 @@ from dataclasses import asdict, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
+import numpy as np
+
+from wrinkle_cad import settings
 from wrinkle_cad.files.atomic import write_export
 from wrinkle_cad.options.checking import check_known
 from wrinkle_cad.options.option import options_of
@@ -20,7 +23,7 @@ from .material import Material, find_material
 from .page import write_page
 from .verdict import entries_of, judge
 from .versions import installed_versions
-from .views import StripView
+from .views import MeshView, StripView
 
 if TYPE_CHECKING:
     from wrinkle_cad.wrinkle.cut_pattern import Pattern
@@ -29,6 +32,12 @@ if TYPE_CHECKING:
 
     from .verdict import Verdict
 
+_SURFACE_SAMPLES: Final = 3000
+"""The page shows the triangles themselves of a strip of more samples: no eye tells them apart."""
+_SURFACE_SAG: Final = 5e-4
+"""Of the strip's size; how far the triangles of the drawn surface may lie from it."""
+_SURFACE_ANGLE: Final = 0.2
+"""rad; how far the normals of its neighbouring triangles may differ."""
 _MATRIX_BRIDGES: Final = 50_000_000
 """The page shows no validity matrix of more possible bridges: they alone would take 50 MB."""
 
@@ -42,6 +51,7 @@ def strip_view(strip: TriangulatedStrip, pieces: Sequence[PatternPiece]) -> Stri
     """
     m, n = len(strip.triangulation.p), len(strip.triangulation.q)
     return StripView(
+        surface=_surface(strip) if m + n <= _SURFACE_SAMPLES else None,
         name=strip.name,
         triangulation=strip.triangulation,
         unrolling=strip.unrolling,
@@ -51,6 +61,19 @@ def strip_view(strip: TriangulatedStrip, pieces: Sequence[PatternPiece]) -> Stri
         least_bending=strip.least_bending,
         role=strip.role,
     )
+
+
+def _surface(strip: TriangulatedStrip) -> MeshView:
+    from wrinkle_cad.cad.kernel.mesh import mesh_of
+
+    points = np.vstack((strip.triangulation.p, strip.triangulation.q))
+    sag = _SURFACE_SAG * float(np.ptp(points, axis=0).max())
+    vertices, faces = mesh_of(
+        strip.topods_shell(),
+        tolerance=sag / settings.MESH_SAG_PER_TOLERANCE,
+        angular_tolerance=_SURFACE_ANGLE,
+    )
+    return MeshView(strip.name, vertices.astype(np.float32), faces.astype(np.int32))
 
 
 def write_strip_page(

@@ -49,6 +49,8 @@ class StripView:
     """GMBT on the same samples: what the strip would cost if developability did not count."""
     role: Role = "strip"
     """``strip``, or ``band`` for the sheets between a strip and the body."""
+    surface: MeshView | None = None
+    """The surface that is written, where it is drawn beside the triangulation's own triangles."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -109,6 +111,7 @@ def _strip_payload(view: StripView, center: NDArray[np.float64]) -> dict[str, An
         "local": None if view.local is None else _path_payload(view.local),
         "least": None if view.least_bending is None else _path_payload(view.least_bending),
         "matrix": matrix,
+        "surface": None if view.surface is None else _mesh_payload(view.surface, center),
         "pieces": [_piece_payload(piece, view) for piece in view.pieces],
     }
 

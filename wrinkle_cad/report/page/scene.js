@@ -12,7 +12,8 @@ Report.space = (THREE, canvas, panel) => {
   world.add(sky, camera);
   camera.add(sun);
   sun.position.set(0.5, 0.9, 1);
-  let waiting = false, colorBy = "state", solid = null;
+  const standpoint = Report.standpoint(THREE, camera, controls);
+  let waiting = false, colorBy = "state", solid = null, leather = null, inspectsBands = false, shownFrom = "whole", clearest = null;
   const marker = new THREE.Mesh(new THREE.CylinderGeometry(1, 1, 1, 12), new THREE.MeshBasicMaterial());
   marker.visible = false;
   marker.renderOrder = 2;
@@ -58,20 +59,51 @@ Report.space = (THREE, canvas, panel) => {
     mesh.userData.strip = strip;
     return { strip, group, mesh, bridges, edges };
   }
-  function buildBody(body) {
-    const shares = new Uint16Array(Report.bytes(body.points).buffer), faces = Report.bytes(body.faces).buffer;
+  function unpacked(packedMesh) {
+    const shares = new Uint16Array(Report.bytes(packedMesh.points).buffer), faces = Report.bytes(packedMesh.faces).buffer;
     const points = new Float32Array(shares.length);
-    for (let at = 0; at < points.length; at += 1) points[at] = body.low[at % 3] + (shares[at] / 65535) * body.span[at % 3];
+    for (let at = 0; at < points.length; at += 1) points[at] = packedMesh.low[at % 3] + (shares[at] / 65535) * packedMesh.span[at % 3];
+    return { points, corners: packedMesh.wide ? new Uint32Array(faces) : new Uint16Array(faces) };
+  }
+  function buildBody(body) {
+    const { points, corners: triangles } = unpacked(body);
     const shape = new THREE.BufferGeometry();
     shape.setAttribute("position", new THREE.BufferAttribute(points, 3));
-    shape.setIndex(new THREE.BufferAttribute(body.wide ? new Uint32Array(faces) : new Uint16Array(faces), 1));
+    shape.setIndex(new THREE.BufferAttribute(triangles, 1));
     shape.computeVertexNormals();
     const mesh = new THREE.Mesh(shape, new THREE.MeshLambertMaterial({ side: THREE.DoubleSide, polygonOffset: true, polygonOffsetFactor: 3, polygonOffsetUnits: 3 }));
     world.add(mesh);
     return mesh;
   }
-  const items = strips.map(build);
+  const items = strips.map(build), wrinkles = items.filter((item) => item.strip.role !== "band");
   if (packed.body) solid = buildBody(packed.body);
+  /* A band that is not looked into is drawn as a part of the body. */
+  const isPlain = (item) => item.strip.role === "band" && !inspectsBands;
+  function showParts() {
+    const wants = (layer) => { const box = panel.querySelector(`[data-layer=${layer}]`); return !box || box.checked; };
+    if (solid) solid.visible = wants("body");
+    items.forEach((item) => {
+      const own = panel.querySelector(`[data-layer="${item.strip.index}"]`);
+      item.group.visible = own ? own.checked : inspectsBands || wants("body");
+      item.bridges.visible = wants("bridges") && !isPlain(item);
+      item.edges.visible = wants("rails") && !isPlain(item);
+    });
+  }
+  /* The exported surface where the page has it, else the triangles between its rails. */
+  function makeLeather() {
+    const made = Report.leather(THREE, renderer, camera);
+    items.forEach((item) => {
+      const own = packed.strips[item.strip.index].surface, chords = item.mesh.geometry.attributes.position.array;
+      const skin = own ? unpacked(own) : { points: chords, corners: Uint32Array.from({ length: chords.length / 3 }, (_, at) => at) };
+      made.addStrip(skin.points, skin.corners, () => item.group.visible);
+    });
+    if (packed.body) {
+      const { points, corners: triangles } = unpacked(packed.body);
+      made.addBody(points, triangles, () => solid.visible);
+    }
+    made.furnish();
+    return made;
+  }
 
   /* Cividis, sampled: even in brightness and the same to color-blind eyes. */
   const RAMP = ["#00224e", "#35456c", "#666970", "#948e77", "#c8b866", "#fee838"].map((code) => new THREE.Color(code));
@@ -84,7 +116,7 @@ Report.space = (THREE, canvas, panel) => {
   const around = (strip, k) => Math.max(measure(strip, Math.max(0, k - 1)), measure(strip, k), measure(strip, Math.min(strip.chosen.count - 1, k + 1)));
   function highest() {
     let high = 0;
-    for (const strip of strips) for (let k = 1; k < strip.chosen.count - 1; k += 1) high = Math.max(high, measure(strip, k));
+    for (const item of items) if (!isPlain(item)) for (let k = 1; k < item.strip.chosen.count - 1; k += 1) high = Math.max(high, measure(item.strip, k));
     return high;
   }
   function paint() {
@@ -97,7 +129,9 @@ Report.space = (THREE, canvas, panel) => {
       if (colorBy === "state") return strip.judged[k] === "developable" ? themed.valid : themed[strip.judged[k]];
       return themed[stateOf(strip, k)];
     };
+    const bodyColor = packed.body && packed.body.color ? new THREE.Color(...packed.body.color) : themed.body;
     const faceColor = (strip, k) => {
+      if (strip.role === "band" && !inspectsBands) return bodyColor;
       if (isMeasure) return shade(around(strip, k));
       if (colorBy === "state") return strip.judged[k] === "developable" ? plain(strip) : themed[strip.judged[k]];
       const state = k === 0 || k === strip.chosen.count - 1 ? "valid" : stateOf(strip, k);
@@ -121,7 +155,7 @@ Report.space = (THREE, canvas, panel) => {
       item.bridges.material.opacity = Math.min(0.75, 400 / strip.chosen.count);
       item.edges.material.color = themed.ink;
     }
-    if (solid) solid.material.color = packed.body.color ? new THREE.Color(...packed.body.color) : themed.body;
+    if (solid) solid.material.color = bodyColor;
     marker.material.color = new THREE.Color(color("highlight"));
     legend(high);
     request();
@@ -133,27 +167,30 @@ Report.space = (THREE, canvas, panel) => {
     box.querySelector(".quarter").textContent = (high / 4).toFixed(high < 4 ? 3 : 1) + "°";
     box.querySelector(".what").textContent = colorBy === "twist" ? "Twist along a bridge" : "Fold at a bridge";
   }
+  /* All of what is shown; of a body on which the strips would be lost, the strips. */
   function frame() {
-    /* The strips fill the view; of a larger body as much as fits around them is seen. */
-    const box = new THREE.Box3(), whole = new THREE.Box3();
-    items.forEach((item) => { if (item.group.visible) box.expandByObject(item.group); });
-    if (solid && solid.visible) whole.expandByObject(solid);
-    const half = (space) => (space.isEmpty() ? 0 : space.getSize(new THREE.Vector3()).length() / 2);
-    const radius = box.isEmpty() ? half(whole) : Math.min(Math.max(half(box), half(whole)), 1.35 * half(box));
-    if (!(radius > 0)) return;
-    const middle = (box.isEmpty() ? whole : box).getCenter(new THREE.Vector3());
-    const fit = radius / Math.sin((camera.fov * Math.PI) / 360) / Math.min(1, camera.aspect) * 0.8;
-    camera.position.copy(middle).add(new THREE.Vector3(0.35, -0.8, 0.62).normalize().multiplyScalar(fit));
-    camera.near = fit / 500;
-    camera.far = fit * 20;
-    camera.updateProjectionMatrix();
-    controls.target.copy(middle);
-    controls.update();
+    const clouds = (parts) => parts.filter((item) => item.group.visible).map((item) => item.mesh.geometry.attributes.position.array);
+    const size = (list) => {
+      const box = new THREE.Box3();
+      list.forEach((cloud) => box.union(new THREE.Box3().setFromArray(cloud)));
+      return box.isEmpty() ? 0 : box.getSize(new THREE.Vector3()).length();
+    };
+    const own = clouds(wrinkles), body = solid && solid.visible ? [solid.geometry.attributes.position.array] : [];
+    const isLost = own.length > 0 && size(own) < size(body) / 15;
+    const all = [...clouds(items), ...body], wanted = shownFrom === "strips" || (shownFrom === "whole" && isLost) ? own : all;
+    if (!clearest) clearest = facing(all);
+    standpoint.from(shownFrom, wanted.length ? wanted : all, clearest);
     request();
+  }
+  function facing(clouds) {
+    const triangles = wrinkles.flatMap((item) => [...item.mesh.geometry.attributes.position.array]);
+    const middle = solid ? new THREE.Box3().setFromArray(solid.geometry.attributes.position.array).getCenter(new THREE.Vector3()) : null;
+    return standpoint.clearest(triangles, clouds, middle);
   }
   function render() {
     waiting = false;
-    renderer.render(world, camera);
+    if (colorBy === "leather") leather.render();
+    else renderer.render(world, camera);
     canvas.dataset.drawn = "yes";
   }
   function request() {
@@ -188,7 +225,7 @@ Report.space = (THREE, canvas, panel) => {
     const box = canvas.getBoundingClientRect();
     const at = new THREE.Vector2(((event.clientX - box.left) / box.width) * 2 - 1, 1 - ((event.clientY - box.top) / box.height) * 2);
     caster.setFromCamera(at, camera);
-    const shown = items.filter((item) => item.group.visible).map((item) => item.mesh);
+    const shown = items.filter((item) => item.group.visible && !isPlain(item)).map((item) => item.mesh);
     const hit = caster.intersectObjects(shown, false)[0];
     if (!hit) return Report.select(null);
     const { strip } = hit.object.userData, k = hit.faceIndex;
@@ -208,20 +245,25 @@ Report.space = (THREE, canvas, panel) => {
   canvas.addEventListener("touchstart", () => { controls.enableZoom = true; }, { passive: true });
   controls.addEventListener("change", request);
 
-  panel.querySelectorAll("[name=color-by]").forEach((input) => input.addEventListener("change", () => { colorBy = input.value; paint(); }));
-  panel.querySelectorAll("[data-layer]").forEach((input) => input.addEventListener("change", () => {
-    const { layer } = input.dataset;
-    if (layer === "body" && solid) solid.visible = input.checked;
-    else if (layer === "bridges") items.forEach((item) => { item.bridges.visible = input.checked; });
-    else if (layer === "rails") items.forEach((item) => { item.edges.visible = input.checked; });
-    else if (items[Number(layer)]) items[Number(layer)].group.visible = input.checked;
-    request();
+  panel.querySelectorAll("[name=color-by]").forEach((input) => input.addEventListener("change", () => {
+    colorBy = input.value;
+    if (colorBy === "leather" && !leather) leather = makeLeather();
+    paint();
   }));
-  panel.querySelector(".reset").addEventListener("click", frame);
+  panel.querySelectorAll("[data-layer]").forEach((input) => input.addEventListener("change", () => {
+    if (input.dataset.layer === "bands") inspectsBands = input.checked;
+    showParts();
+    paint();
+  }));
+  panel.querySelectorAll("[data-view]").forEach((button) => button.addEventListener("click", () => {
+    shownFrom = button.dataset.view;
+    frame();
+  }));
   new ResizeObserver(resize).observe(canvas.parentElement);
   Report.onSelect(highlight);
   Report.onRedraw(() => { paint(); render(); });
   resize();
+  showParts();
   paint();
   frame();
   if (Report.selected()) highlight(Report.selected());
