@@ -234,7 +234,11 @@ def test_the_strips_are_seen_from_each_standpoint(page: webdriver.Chrome) -> Non
         seen.add(image.tobytes())
 
 
-def test_the_surfaces_are_shown_as_leather(page: webdriver.Chrome) -> None:
+def test_the_surfaces_are_shown_as_leather(
+    browser: webdriver.Chrome, tmp_path: Path, html: str
+) -> None:
+    page = browser
+    open_page(page, tmp_path / "leather.html", html, width=420, height=500)
     before = picture(page, "space")
     color_by(page, "leather")
     until(lambda: picture(page, "space").tobytes() != before.tobytes(), "leather")

@@ -26,7 +26,8 @@ from .tables import tables_panel, verdict_panel
 from .views import MeshView, StripView, scene_payload
 
 _SCRIPTS: Final = (
-    "core.js", "library.js", "camera.js", "leather.js", "scene.js", "matrix.js", "curves.js", "pattern.js", "main.js",
+    "core.js", "library.js", "camera.js", "leather.js", "scene.js", "matrix.js", "curves.js",
+    "pattern.js", "main.js",
 )  # fmt: skip
 # Under the names that they import each other by, each behind those that it imports.
 _LIBRARY: Final = (
