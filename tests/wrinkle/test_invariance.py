@@ -87,8 +87,9 @@ def test_a_strip_is_the_same_however_its_rails_are_drawn(seed: int, way: str) ->
     check(seed, strip_of(WAYS[way](poles(seed))))
 
 
+# Number 25 was stretched where it was a thousand times as large.
 @pytest.mark.parametrize("scale", [1e-3, 1e3])
-@pytest.mark.parametrize("seed", range(4))
+@pytest.mark.parametrize("seed", [0, 1, 2, 25])
 def test_a_strip_is_the_same_at_any_size(seed: int, scale: float) -> None:
     p, q = poles(seed)
     check(seed, strip_of((scale * p, scale * q), scale))

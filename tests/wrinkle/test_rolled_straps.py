@@ -27,9 +27,17 @@ def rolled(corners: np.ndarray) -> Edge | Wire:
     return legs[0] if len(legs) == 1 else Wire(legs)
 
 
-# Without a sample in view of its corners number 5 was folded by 172 degrees, and 7% too large.
+# Without a sample in view of its corners number 5 was folded by 172 degrees, and 7% too large; 27
+# and 63 have legs along a ruling, which spanned planes that were turned over.
+DEFAULT = (5, 20, 27, 63)
+
+
 @pytest.mark.parametrize(
-    "seed", [5, 18, 20, *(pytest.param(seed, marks=pytest.mark.slow) for seed in range(21, 121))]
+    "seed",
+    [
+        seed if seed in DEFAULT else pytest.param(seed, marks=pytest.mark.slow)
+        for seed in (5, *range(18, 121))
+    ],
 )
 def test_a_strap_rolled_onto_a_cylinder_keeps_its_area_and_bends_gently(seed: int) -> None:
     flat = upright_strap(seed)
@@ -37,4 +45,6 @@ def test_a_strap_rolled_onto_a_cylinder_keeps_its_area_and_bends_gently(seed: in
     assert strip.area_mm2 == pytest.approx(outline(flat).area, rel=1e-4)
     assert strip.report.area_pattern_mm2 == pytest.approx(strip.area_mm2, rel=1e-6)
     assert largest_fold_deg(strip) < 15.0
+    # Its legs are splines, which leave the cylinder by some micrometres.
+    assert strip.report.smallest_bend_radius_mm == pytest.approx(RADIUS, rel=0.2)
     assert strip.findings == ()

@@ -5,8 +5,10 @@ import time
 from collections.abc import Callable
 
 import numpy as np
+import numpy.typing as npt
 import pytest
 
+from tests.seeds import seeds
 from tests.strip import exact_strips
 from tests.strip.rulings.rails import (
     Rails,
@@ -25,8 +27,8 @@ from tests.strip.rulings.rails import (
 from wrinkle_cad.strip.rulings.rail_curve import RailCurve
 from wrinkle_cad.strip.rulings.surface import RuledStrip, rule_strip
 
+Floats = npt.NDArray[np.float64]
 CREASE = math.radians(5.0)
-
 
 HELICOIDS = [(10.0, 0.01, 0.125), (10.0, 0.02, 0.496), (20.0, 0.0414, 7.605)]
 
@@ -146,6 +148,64 @@ def test_a_zigzag_prism_is_creased_at_every_corner() -> None:
     angles = [math.degrees(crease.angle) for crease in strip.creases]
     np.testing.assert_allclose(angles, 2.0 * math.degrees(math.atan(0.6)), atol=0.1)
     assert len(angles) == 7
+
+
+def extruded(seed: int) -> tuple[Rails, Floats, Floats]:
+    """A zigzag of any angles and its copy beside it; where its corners are, and their angles."""
+    random = np.random.default_rng([21, seed])
+    count = int(random.integers(3, 12))
+    x = np.cumsum(random.uniform(4.0, 15.0, count))
+    z = random.uniform(2.0, 9.0) * random.uniform(0.5, 1.5, count) * (np.arange(count) % 2)
+    corners, by = stack(x, 0.0, z), np.array([random.uniform(-3.0, 3.0), 30.0, 0.0])
+    legs = np.diff(corners, axis=0)
+    normals = np.cross(legs, by)
+    normals /= np.linalg.norm(normals, axis=1)[:, None]
+    angle = np.degrees(np.arccos((normals[1:] * normals[:-1]).sum(axis=1)))
+    at = np.cumsum(np.linalg.norm(legs, axis=1))[:-1]
+    p, q = (polyline([tuple(point) for point in points]) for points in (corners, corners + by))
+    return (p, q), at, angle
+
+
+# Number 16 was a row of planes between corners that are not opposite each other.
+@pytest.mark.parametrize("seed", [*seeds(200, default=6), 16])
+def test_a_prism_is_creased_along_its_edges_and_nowhere_else(seed: int) -> None:
+    rails, at, angle = extruded(seed)
+    corners = np.concatenate(([0.0], at, [rails[0].length]))
+    strip = rule_strip(*rails, (corners, corners))
+    creases = strip.creases
+    np.testing.assert_allclose([crease.p_arc for crease in creases], at, atol=1e-9)
+    np.testing.assert_allclose([crease.q_arc for crease in creases], at, atol=1e-9)
+    found = [math.degrees(crease.angle) for crease in creases]
+    np.testing.assert_allclose(found, angle, atol=1e-6)
+    assert strip.strain.largest == pytest.approx(0.0, abs=1e-12)
+
+
+def test_a_leg_along_a_ruling_of_a_cylinder_folds_nothing() -> None:
+    """A tab with an upright side: from that side to a point beside it there is no sheet."""
+    radius, up = 40.0, 6.0
+
+    def rolled(corners: list[tuple[float, float]]) -> RailCurve:
+        at = np.concatenate(([0.0], np.cumsum(np.hypot(*np.diff(corners, axis=0).T))))
+        corner = np.array(corners)
+
+        def point_at(u: Floats) -> Floats:
+            x, y = (np.interp(u, at, corner[:, axis]) for axis in (0, 1))
+            return stack(radius * np.cos(x / radius), y, radius * np.sin(x / radius))
+
+        def velocity_at(u: Floats) -> Floats:
+            leg = np.clip(np.searchsorted(at, u, side="right") - 1, 0, len(at) - 2)
+            x = np.interp(u, at, corner[:, 0]) / radius
+            dx, dy = (np.diff(corner, axis=0) / np.diff(at)[:, None])[leg].T
+            return stack(-dx * np.sin(x), dy, dx * np.cos(x))
+
+        return RailCurve(point_at, velocity_at, (0.0, float(at[-1])), tuple(at[1:-1].tolist()))
+
+    for lean in (0.0, 1e-6, 3e-3, -3e-3):
+        tab = [(0.0, 30.0), (24.0, 30.0), (24.0 + lean, 30.0 - up), (50.0, 23.0), (50.0, 30.0)]
+        strip = ruled((rolled([(0.0, 0.0), (120.0, 0.0)]), rolled([*tab, (120.0, 30.0)])))
+        assert not strip.creases
+        assert strip.radius.min() == pytest.approx(radius, rel=0.02)
+        assert strip.strain.largest < 1e-6
 
 
 def test_a_flat_strap_with_a_tab_is_one_plane() -> None:

@@ -9,6 +9,7 @@ from typing import Final
 import numpy as np
 import numpy.typing as npt
 
+from .creases import NEAR_PER_WIDTH, SMALLEST
 from .pieces import FLAT_PER_WIDTH, Piece
 from .sheet import Sheet, turns_between
 from .vectors import crosses, dots
@@ -37,7 +38,8 @@ def radius_along(sheet: Sheet, pieces: Sequence[Piece]) -> Floats:
     On ruled pieces it is taken across the rulings, at that end where it is smaller; on a cone at
     its far end and, but for a cone about a corner of the sheet, near its apex; planes have inf. A
     cone about a corner of the sheet beside a torsal piece has inf, too: nothing holds the sheet's
-    free end there, which takes the bend of its neighbour.
+    free end there, which takes the bend of its neighbour. So has a piece that is so narrow and
+    turns so little that, all in one ruling, it would be no crease.
 
     Args:
         sheet: the strip's tangent planes.
@@ -49,7 +51,7 @@ def radius_along(sheet: Sheet, pieces: Sequence[Piece]) -> Floats:
         if piece.kind in ("torsal", "gap"):
             for end in _both_ends(sheet, piece):
                 radius[run] = np.minimum(radius[run], _radius_of_ruled(end))
-        elif piece.kind == "cone":
+        elif piece.kind == "cone" and not _is_slight(sheet, piece, piece.apex == "Q"):
             radius[run] = _radius_of_cone(sheet, pieces, number)
     return radius
 
@@ -76,12 +78,30 @@ def _both_ends(sheet: Sheet, piece: Piece) -> Iterator[_End]:
     first, last = piece.first, piece.last
     run = slice(first, last)
     direction, reach = sheet.direction[first : last + 1], sheet.reach[first : last + 1]
-    for normal, across in ((sheet.p_normal, sheet.p_across), (sheet.q_normal, sheet.q_across)):
+    for on_p in (True, False):
+        if _is_slight(sheet, piece, on_p):
+            continue
+        normal, across = _at_end(sheet, on_p)
         at_rulings = np.concatenate((normal[run, 0], normal[last - 1 : last, 1]))
         moved = np.concatenate(([0.0], np.cumsum(across[run])))
         half = GAP_WINDOW_PER_WIDTH * reach if piece.kind == "gap" else np.zeros_like(reach)
         windows = _windows(moved, half)
         yield at_rulings, moved, crosses(at_rulings, direction), reach, windows
+
+
+def _at_end(sheet: Sheet, on_p: bool) -> tuple[Floats, Floats]:
+    """Normals, and the way across the rulings, at P's end of the rulings or at Q's."""
+    return (sheet.p_normal, sheet.p_across) if on_p else (sheet.q_normal, sheet.q_across)
+
+
+def _is_slight(sheet: Sheet, piece: Piece, on_p: bool) -> bool:
+    """Whether a piece turns so little, and on so short a way, that as a jump it is no crease."""
+    run = slice(piece.first, piece.last)
+    normal, across = _at_end(sheet, on_p)
+    way = math.fsum(across[run].tolist())
+    if way > NEAR_PER_WIDTH * float(sheet.reach[piece.first : piece.last + 1].max()):
+        return False
+    return math.fsum(turns_between(normal[run, 0], normal[run, 1]).tolist()) <= SMALLEST
 
 
 def _radius_of_ruled(end: _End) -> Floats:

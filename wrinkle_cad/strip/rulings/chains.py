@@ -2,7 +2,8 @@
 
 A fan begins and ends at rulings without twist. Its apex is the place at which the fan before it
 ends, so in a row of fans each follows from the one before; only one apex of a row is free. It is
-the one that lies at a corner or an end of a rail, or else the row's first.
+the one that lies at a corner or an end of a rail, or else that of a fan which begins or ends at a
+corner of the rail that it runs along, or else the row's first. A ruling stays at such a corner.
 """
 
 from __future__ import annotations
@@ -131,7 +132,8 @@ def _solve_row(
     """Moves the rulings between the fans of a row; fan k lies between places k and k + 1."""
     first, last = row
     fixed = {k for k in range(first, last) if _is_fixed(p, q, stretches[k], places[k])}
-    known = fixed or {first}
+    held = None if fixed else _held_by_corner(p, q, stretches, places, row)
+    known = fixed or {first if held is None else held}
     for k in sorted(known):
         _take_apex(stretches[k], places[k], places[k + 1])
     earliest = min(known)
@@ -149,8 +151,40 @@ def _solve_row(
 
 
 def _is_fixed(p: Nodes, q: Nodes, fan: _Stretch, place: _Place) -> bool:
-    rail, at = (p, place.u) if fan.way == FAN_P else (q, place.v)
+    return _is_edge(p, place.u) if fan.way == FAN_P else _is_edge(q, place.v)
+
+
+def _is_edge(rail: Nodes, at: float) -> bool:
+    """Whether a place is a corner or an end of a rail."""
     return any(at in (piece[0][0], piece[0][-1]) for piece in rail.pieces)
+
+
+def _held_by_corner(
+    p: Nodes,
+    q: Nodes,
+    stretches: list[_Stretch],
+    places: list[_Place],
+    row: tuple[int, int],
+) -> int | None:
+    """The first or last fan of a row, if it begins or ends at a corner of the rail it runs along.
+
+    On the corner's other side the strip is ruled: the apex is where that ends without twist.
+    """
+    first, last = row
+    for fan, beside, at in ((first, first - 1, first), (last - 1, last, last)):
+        if not 0 <= beside < len(stretches):
+            continue
+        way, place, beyond = stretches[fan].way, places[at], int(beside > fan)
+        on_p, on_q = place.p_piece, place.q_piece
+        on_p, on_q = (on_p, on_q + beyond) if way == FAN_P else (on_p + beyond, on_q)
+        rail, corner = (q, place.v) if way == FAN_P else (p, place.u)
+        if _is_edge(rail, corner) and on_p < len(p.pieces) and on_q < len(q.pieces):
+            ruled = _Place(place.u, place.v, on_p, on_q)
+            _solve(p, q, ruled, along=FAN_Q if way == FAN_P else FAN_P)
+            place.u, place.v = ruled.u, ruled.v
+            _take_apex(stretches[fan], place, places[fan + 1 - beyond])
+            return fan
+    return None
 
 
 def _take_apex(fan: _Stretch, known: _Place, other: _Place) -> None:
@@ -163,6 +197,8 @@ def _take_apex(fan: _Stretch, known: _Place, other: _Place) -> None:
 
 def _solve(p: Nodes, q: Nodes, place: _Place, *, along: int) -> None:
     """Moves a ruling to where it has no twist, along the rail that a fan runs along."""
+    if _is_edge(*((q, place.v) if along == FAN_P else (p, place.u))):
+        return
     p_piece, q_piece = p.pieces[place.p_piece], q.pieces[place.q_piece]
     if along == FAN_P:
         other = point_and_tangent(*p_piece, place.u)

@@ -67,11 +67,18 @@ def creases_of(sheet: Sheet, p: RailCurve, q: RailCurve, spacing: float) -> tupl
 
 
 def _groups(sheet: Sheet, found: Ints, spacing: float) -> list[Ints]:
-    """Jumps that follow each other closely on both rails, together."""
+    """Jumps that follow each other closely on both rails, together.
+
+    Closely across the rulings: where a rail runs along one of them there is no sheet between, and
+    what looks like a plane of its own has no side.
+    """
     if not found.size:
         return []
     near = np.maximum(2.0 * spacing, NEAR_PER_WIDTH * sheet.reach[found[:-1]])
-    far = (np.diff(sheet.p_arc[found]) > near) | (np.diff(sheet.q_arc[found]) > near)
+    far = np.zeros(len(found) - 1, dtype=np.bool_)
+    for across in (sheet.p_across, sheet.q_across):
+        moved = np.concatenate(([0.0], np.cumsum(np.abs(across))))
+        far |= np.diff(moved[found]) > near
     return list(np.split(found, np.flatnonzero(far) + 1))
 
 

@@ -11,11 +11,13 @@ three ways:
 
 A change between ways is a crease of the twist at that ruling, since a ruled surface has both
 tangents in its planes and a cone only that of the rail it runs along; so is a corner of a rail. A
-crease of the angle `c` costs `CREASE c^2` times its length: so much more than a twist by `c` over a
-stretch as long as the ruling. Zigzags of creases never pay on a smooth strip (even at a weight of 1
-they cost at least 2.6 times as much as twisting it), and a crease that spares a long twist stays
-too slight to be called one. At the rails' ends and corners, where the tangent is free, fans cost
-nothing.
+crease of the angle `c`, the larger one at both ends of the ruling, costs `CREASE c^2` times its
+length: so much more than a twist by `c` over a stretch as long as the ruling. Zigzags of creases
+never pay on a smooth strip (even at a weight of 1 they cost at least 2.6 times as much as twisting
+it), and a crease that spares a long twist stays too slight to be called one. A sharp crease costs
+but in proportion to its angle: were it the square, several in a row between the corners of both
+rails would cost less than the one fold of a prism's edge. At the rails' ends and corners, where the
+tangent is free, fans cost nothing.
 """
 
 from __future__ import annotations
@@ -41,8 +43,11 @@ Q_FORWARD: Final = 2
 
 CREASE: Final = 20.0
 """Weight of a crease's squared angle times its length, against that of twist over as long a way."""
-_SHORTNESS: Final = 1e-12
-"""Weight of a ruling's squared length, per mm^2: decides in planes only."""
+SHARP: Final = math.radians(10.0)
+"""rad; what a crease costs grows with the square of its angle up to here, then evenly."""
+_SHORTNESS: Final = 1e-8
+"""Weight of a ruling's squared length, per squared mean length of the rails: decides in planes
+only."""
 
 
 @compiled
@@ -112,22 +117,11 @@ def corridor(
 
 
 @compiled
-def _switch(cost: Floats, way: Bytes, price: float) -> None:
-    """Lets each way at a node be reached from the other two, at the price of a crease."""
-    r, p, q = cost[0], cost[1], cost[2]
-    way[0], way[1], way[2] = 0, 1, 2
-    if p + price < cost[0]:
-        cost[0], way[0] = p + price, 1
-    if q + price < cost[0]:
-        cost[0], way[0] = q + price, 2
-    if r + price < cost[1]:
-        cost[1], way[1] = r + price, 0
-    if q + price < cost[1]:
-        cost[1], way[1] = q + price, 2
-    if r + price < cost[2]:
-        cost[2], way[2] = r + price, 0
-    if p + price < cost[2]:
-        cost[2], way[2] = p + price, 1
+def crease_cost(square: float) -> float:
+    """Returns what a crease costs by its length, from its squared angle in rad."""
+    if square <= SHARP * SHARP:
+        return CREASE * square
+    return CREASE * SHARP * (2.0 * math.sqrt(square) - SHARP)
 
 
 @compiled
@@ -162,25 +156,66 @@ def pair_nodes(
     start = np.zeros(p.shape[0] + 1, np.int64)
     for i in range(p.shape[0]):
         start[i + 1] = start[i] + high[i] - low[i] + 1
-    cost = np.full((start[-1], 3), np.inf)
+    reached, cost = np.full((start[-1], 3), np.inf), np.full((start[-1], 3), np.inf)
     plane = np.zeros((start[-1], 14))
-    way = np.zeros((start[-1], 3), np.int8)
-    step = np.zeros((start[-1], 3), np.int8)
-    cost[0, :] = 0.0
+    left, step = np.zeros((start[-1], 3), np.int8), np.zeros((start[-1], 3), np.int8)
+    reached[0, :] = 0.0
+    size = 0.5 * (p_arc[-1] + q_arc[-1])
+    weights = (bending, _SHORTNESS / (size * size))
     for i in range(p.shape[0]):
+        i_corner = i > 0 and p_arc[i] == p_arc[i - 1]
         for j in range(low[i], high[i] + 1):
+            j_corner = j > 0 and q_arc[j] == q_arc[j - 1]
             cell = start[i] + j - low[i]
             length = _planes(p[i], q[j], a[i], b[j], plane[cell])
-            if i > 0 and low[i - 1] <= j <= high[i - 1]:
+            if i > 0 and not i_corner and low[i - 1] <= j <= high[i - 1]:
                 before, ds = start[i - 1] + j - low[i - 1], p_arc[i] - p_arc[i - 1]
-                turn = twist_at(p[i], q[j], a[i - 1], a[i]) if ds == 0.0 else 0.0
-                _step(cost, step, plane, cell, before, ds, length, turn, bending, P_FORWARD)
-            if j > low[i]:
+                _step(reached, cost, step, plane, cell, before, ds, weights, P_FORWARD)
+            if j > low[i] and not j_corner:
                 ds = q_arc[j] - q_arc[j - 1]
-                turn = twist_at(p[i], q[j], b[j - 1], b[j]) if ds == 0.0 else 0.0
-                _step(cost, step, plane, cell, cell - 1, ds, length, turn, bending, Q_FORWARD)
-            _switch(cost[cell], way[cell], CREASE * plane[cell, 12] * length)
-    return _trace(cost, way, step, start, low)
+                _step(reached, cost, step, plane, cell, cell - 1, ds, weights, Q_FORWARD)
+            _leave(reached[cell], cost[cell], left[cell], length * crease_cost(plane[cell, 12]))
+            for back in range(1, 4):
+                i2, j2 = i - back % 2, j - back // 2
+                if (back % 2 and not i_corner) or (back // 2 and not j_corner):
+                    continue
+                if low[i2] <= j2 <= high[i2]:
+                    source = start[i2] + j2 - low[i2]
+                    rails = (p[i], q[j], a[i2], b[j2], a[i], b[j])
+                    _leave_corner(reached[source], cost[cell], left[cell], rails, length, back)
+    return _trace(cost, left, step, start, low)
+
+
+@compiled
+def _leave(reached: Floats, cost: Floats, left: Bytes, price: float) -> None:
+    """Leaves a ruling on each way, from that on which it was reached, at the price of a crease."""
+    for way in range(3):
+        cost[way], left[way] = reached[way], way
+        for before in range(3):
+            if before != way and reached[before] + price < cost[way]:
+                cost[way], left[way] = reached[before] + price, before
+
+
+@compiled
+def _leave_corner(
+    reached: Floats,
+    cost: Floats,
+    left: Bytes,
+    rails: tuple[Floats, Floats, Floats, Floats, Floats, Floats],
+    length: float,
+    back: int,
+) -> None:
+    """Leaves a ruling at a corner, from the other side of it, at the price of the whole jump."""
+    p, q, a, b, a2, b2 = rails
+    for way in range(3):
+        for before in range(3):
+            if reached[before] == np.inf:
+                continue
+            x = twist_at(p, q, b if before == FAN_P else a, b2 if way == FAN_P else a2)
+            y = twist_at(p, q, a if before == FAN_Q else b, a2 if way == FAN_Q else b2)
+            total = reached[before] + length * crease_cost(max(x * x, y * y))
+            if total < cost[way]:
+                cost[way], left[way] = total, before + 3 * back
 
 
 @compiled
@@ -225,64 +260,52 @@ def _turn(before: Floats, here: Floats, rail: int) -> float:
 
 @compiled
 def _step(
+    reached: Floats,
     cost: Floats,
     step: Bytes,
     plane: Floats,
     cell: int,
     before: int,
     ds: float,
-    length: float,
-    turn: float,
-    bending: float,
+    weights: tuple[float, float],
     rail: int,
 ) -> None:
-    """Reaches a pair of nodes from the one before it on one rail, in each of the three ways."""
-    moving = FAN_Q if rail == P_FORWARD else FAN_P
-    resting = FAN_P if rail == P_FORWARD else FAN_Q
-    if ds > 0.0:
-        p_turn, q_turn = _turn(plane[before], plane[cell], 0), _turn(plane[before], plane[cell], 1)
-        square = 0.5 * (plane[before, 13] ** 2 + plane[cell, 13] ** 2)
-        weight, short = bending * square / ds, _SHORTNESS * square
-        twist = 0.25 * ds * (plane[before, 12] + plane[cell, 12])
-        ruled = cost[before, 0] + twist + short * ds + weight * 0.5 * (p_turn**2 + q_turn**2)
-        rest = np.inf
-        own = p_turn if rail == P_FORWARD else q_turn
-        fan = cost[before, moving] + short * ds + weight * own * own
-    else:  # from one side of a corner to the other
-        crease = CREASE * turn * turn * length
-        ruled = cost[before, 0] + crease
-        rest = cost[before, resting]
-        fan = cost[before, moving] + crease
-    if ruled < cost[cell, 0]:
-        cost[cell, 0], step[cell, 0] = ruled, rail
-    if rest < cost[cell, resting]:
-        cost[cell, resting], step[cell, resting] = rest, rail
-    if fan < cost[cell, moving]:
-        cost[cell, moving], step[cell, moving] = fan, rail
+    """Reaches a pair of nodes from the one before it on one rail, ruled or as a fan."""
+    fan = FAN_Q if rail == P_FORWARD else FAN_P
+    p_turn, q_turn = _turn(plane[before], plane[cell], 0), _turn(plane[before], plane[cell], 1)
+    square = 0.5 * (plane[before, 13] ** 2 + plane[cell, 13] ** 2)
+    weight, short = weights[0] * square / ds, weights[1] * square * ds
+    twist = 0.25 * ds * (plane[before, 12] + plane[cell, 12])
+    ruled = cost[before, RULED] + twist + short + weight * 0.5 * (p_turn**2 + q_turn**2)
+    if ruled < reached[cell, RULED]:
+        reached[cell, RULED], step[cell, RULED] = ruled, rail
+    own = p_turn if rail == P_FORWARD else q_turn
+    fanned = cost[before, fan] + short + weight * own * own
+    if fanned < reached[cell, fan]:
+        reached[cell, fan], step[cell, fan] = fanned, rail
 
 
 @compiled
-def _trace(cost: Floats, way: Bytes, step: Bytes, start: Ints, low: Ints) -> tuple[Ints, Bytes]:
+def _trace(cost: Floats, left: Bytes, step: Bytes, start: Ints, low: Ints) -> tuple[Ints, Bytes]:
     """Follows the cheapest pairing back from the last pair of nodes."""
     i = start.size - 2
     cell = start[i + 1] - 1
     j = low[i] + cell - start[i]
-    longest = i + j + 1
-    pairs, ways = np.empty((longest, 2), np.int64), np.empty(longest, np.int8)
+    at = i + j
+    pairs, ways = np.empty((at + 1, 2), np.int64), np.empty(at, np.int8)
     mode = 0
     for other in (1, 2):
         if cost[cell, other] < cost[cell, mode]:
             mode = other
-    at = longest - 1
     pairs[at, 0], pairs[at, 1] = i, j
     while at > 0:
-        mode = way[cell, mode]
-        if step[cell, mode] == P_FORWARD:
-            i -= 1
-        else:
-            j -= 1
+        back, mode = left[cell, mode] // 3, left[cell, mode] % 3
+        for rail in (Q_FORWARD, P_FORWARD):
+            if back & rail:
+                i, j, at = i - (rail == P_FORWARD), j - (rail == Q_FORWARD), at - 1
+                pairs[at, 0], pairs[at, 1], ways[at] = i, j, mode
+        rail = step[start[i] + j - low[i], mode]
+        i, j, at = i - (rail == P_FORWARD), j - (rail == Q_FORWARD), at - 1
+        pairs[at, 0], pairs[at, 1], ways[at] = i, j, mode
         cell = start[i] + j - low[i]
-        at -= 1
-        ways[at] = mode
-        pairs[at, 0], pairs[at, 1] = i, j
-    return pairs, ways[: longest - 1]
+    return pairs, ways

@@ -20,6 +20,9 @@ SHORTEST_IN_NODES: Final = 4.0
 """A ruling of at most so many nodes' spacing has no twist."""
 _ALONG: Final = 1e-7
 """A tangent within so many radians of its ruling spans no plane with it."""
+SLIVER: Final = 1e-3
+"""Where the rails move along the rulings, and across them by no more than this share of their way,
+there is no sheet to speak of: it has the plane of what lies before."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -78,6 +81,9 @@ def sheet_of(p: RailCurve, q: RailCurve, rulings: Stations, spacing: float) -> S
         q_normals.append(nb)
         turns.append(angles(dots(crosses(na, nb), d[end]), dots(na, nb)))
     p_arc, q_arc = p.arc_at(rulings.u), q.arc_at(rulings.v)
+    p_across = np.diff(p_arc) * (p_speeds[0] + p_speeds[1]) / 2
+    q_across = np.diff(q_arc) * (q_speeds[0] + q_speeds[1]) / 2
+    solid = p_across + q_across > SLIVER * (np.diff(p_arc) + np.diff(q_arc))
     long = np.stack([reach[end] > SHORTEST_IN_NODES * spacing for end in ends], axis=1)
     return Sheet(
         rulings=rulings,
@@ -85,11 +91,13 @@ def sheet_of(p: RailCurve, q: RailCurve, rulings: Stations, spacing: float) -> S
         q_arc=q_arc,
         reach=reach,
         direction=d,
-        p_normal=np.stack(p_normals, axis=1),
-        q_normal=np.stack(q_normals, axis=1),
-        twist=np.where(_column(rulings.way == RULED) & long, np.stack(turns, axis=1), 0.0),
-        p_across=np.diff(p_arc) * (p_speeds[0] + p_speeds[1]) / 2,
-        q_across=np.diff(q_arc) * (q_speeds[0] + q_speeds[1]) / 2,
+        p_normal=_over_slivers(np.stack(p_normals, axis=1), solid),
+        q_normal=_over_slivers(np.stack(q_normals, axis=1), solid),
+        twist=np.where(
+            _column((rulings.way == RULED) & solid) & long, np.stack(turns, axis=1), 0.0
+        ),
+        p_across=p_across,
+        q_across=q_across,
     )
 
 
@@ -102,6 +110,17 @@ def _plane(normal: Floats, sine: Floats) -> Floats:
     return np.where(
         (sine > _ALONG)[:, None], normal / np.where(sine > 0.0, sine, 1.0)[:, None], 0.0
     )
+
+
+def _over_slivers(normal: Floats, solid: Bools) -> Floats:
+    """Normals with those of slivers replaced by what lies before them, or after the first."""
+    if solid.all() or not solid.any():
+        return normal
+    place = np.arange(len(solid))
+    before = np.maximum.accumulate(np.where(solid, place, -1))
+    last, first = normal[before, 1], normal[int(np.argmax(solid)), 0]
+    beside = np.where(_column(before >= 0), last, first)[:, None]
+    return np.where(solid[:, None, None], normal, beside)
 
 
 def turns_between(before: Floats, after: Floats) -> Floats:
