@@ -7,6 +7,7 @@ import io
 import re
 import time
 from collections.abc import Callable
+from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any
 
@@ -415,7 +416,20 @@ def test_the_page_prints(browser: webdriver.Chrome, tmp_path: Path, html: str, d
     pdf = base64.b64decode(printed)
     assert pdf.startswith(b"%PDF")
     assert len(pdf) > 50_000
+    assert len(re.findall(rb"/Type /Page\b", pdf)) <= 4
     assert errors(browser) == []
+
+
+def test_three_wrinkles_with_their_bands_print_on_four_sheets(
+    browser: webdriver.Chrome, tmp_path: Path
+) -> None:
+    views = three_wrinkles()
+    findings = [{"code": "a", "severity": "info", "message": "Seen. " * 40} for _ in range(30)]
+    summary = summary_of(views) | {"findings": findings}
+    open_page(browser, tmp_path / "three.html", write_page(summary, views, dome(20)))
+    size = {"printBackground": False, "paperWidth": 8.27, "paperHeight": 11.69}
+    pdf = base64.b64decode(browser.execute_cdp_cmd("Page.printToPDF", size)["data"])
+    assert 2 <= len(re.findall(rb"/Type /Page\b", pdf)) <= 4
 
 
 def test_the_3d_view_is_there_once_the_page_has_loaded(
@@ -486,8 +500,15 @@ def test_verdict_picture_and_figures_stand_on_the_first_screen(
     browser: webdriver.Chrome, tmp_path: Path, name: str, width: int, height: int
 ) -> None:
     views = FIRST_SCREENS[name]()
-    html = write_page(summary_of(views), views, dome(40))
+    outputs = {kind: {"file": f"shoe.{kind}"} for kind in ("step", "stl", "dxf")}
+    summary = summary_of(views) | {"outputs": outputs}
+    html = write_page(summary, views, dome(40), moment=datetime(2026, 11, 25, tzinfo=UTC))
     open_page(browser, tmp_path / "first.html", html, width=width, height=height)
+    links = [link.get_attribute("href") for link in browser.find_elements(By.CSS_SELECTOR, "nav a")]
+    assert links == [(tmp_path / entry["file"]).as_uri() for entry in outputs.values()]
+    sizes = "return [...document.querySelectorAll('.tile dd, .headline, .segments label, button')]"
+    sizes += ".filter((box) => box.scrollWidth > box.clientWidth + 1).map((box) => box.innerText)"
+    assert browser.execute_script(sizes) == []
     script = "return arguments[0].getBoundingClientRect().bottom"
 
     def bottom(element: WebElement) -> float:

@@ -49,6 +49,7 @@ def summary_of(
             "file": job.input.name,
             "format": file.format,
             "unit": file.unit,
+            "sha256": file.sha256,
             "reasons": list(chosen.reasons),
         },
         "settings": settings_as_json(job),

@@ -190,6 +190,6 @@ def _write(job: Job, made: Made, summary: dict[str, Any], clock: PhaseClock) -> 
         # The page shows what the JSON holds, so its own seconds are in neither.
         summary["seconds"] = {phase: round(took, 3) for phase, took in clock.seconds.items()}
         with clock.phase("page"):
-            paths["html"].write_text(written_page(made, summary), encoding="utf-8")
+            paths["html"].write_text(written_page(job, made, summary), encoding="utf-8")
         paths["json"].write_text(to_json(summary), encoding="utf-8")
     return tuple(output_paths(job, kinds).values())

@@ -93,7 +93,7 @@ def write_flat(job: Job, made: Made, paths: Mapping[str, Path]) -> list[dict[str
     return changed + [finding for finding in more if finding not in changed]
 
 
-def written_page(made: Made, summary: Mapping[str, Any]) -> str:
+def written_page(job: Job, made: Made, summary: Mapping[str, Any]) -> str:
     """The job's page."""
     from wrinkle_cad.report.page import write_page
     from wrinkle_cad.report.strip_page import strip_view
@@ -101,7 +101,7 @@ def written_page(made: Made, summary: Mapping[str, Any]) -> str:
     views = [
         strip_view(strip, made.pattern.pieces_of(index)) for index, strip in enumerate(made.strips)
     ]
-    return write_page(summary, views, _body_view(made))
+    return write_page(summary, views, _body_view(made), moment=timestamp_of(job))
 
 
 def timestamp_of(job: Job) -> datetime.datetime:

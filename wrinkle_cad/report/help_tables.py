@@ -20,6 +20,9 @@ def _card(
     columns: Sequence[tuple[str, bool]],
     row: Row,
     note: str,
+    *,
+    is_printed: bool = True,
+    is_clickable: bool = True,
 ) -> Element | None:
     """A card with a row for each item under a key of each strip; None without any."""
     rows = [
@@ -29,7 +32,9 @@ def _card(
     ]
     if not rows:
         return None
-    return card(title, table(columns, rows), node("p", note, class_="note"))
+    hint = node("span", " Click a row to see its middle.", class_="screen-only")
+    shown = table(columns, rows), node("p", note, hint if is_clickable else None, class_="note")
+    return card(title, *shown, is_printed=is_printed)
 
 
 def gaps_card(numbers: Numbers) -> Element | None:
@@ -44,7 +49,7 @@ def gaps_card(numbers: Numbers) -> Element | None:
     )
     note = (
         "Stretches whose rulings twist: no developable surface lies there. Twist is positive if"
-        " clockwise as seen from P to Q. Click a row to see its middle."
+        " clockwise as seen from P to Q."
     )
     return _card(numbers, "gaps", "Where a sheet must give", columns, _gap_row, note)
 
@@ -86,7 +91,7 @@ def trials_card(numbers: Numbers) -> Element | None:
         "Each change by itself, on this file; every other setting as it is. Piece longer: along the"
         " rulings of the surface that is judged."
     )
-    return _card(numbers, "trials", "What was tried", columns, _trial_row, note)
+    return _card(numbers, "trials", "What was tried", columns, _trial_row, note, is_clickable=False)
 
 
 def _trial_row(numbers: Numbers, at: int, number: int, trial: Mapping[str, Any]) -> Element:
@@ -122,10 +127,10 @@ def runs_card(numbers: Numbers) -> Element | None:
     )
     note = (
         "Runs of bridges at which the triangles are not those of a developable surface: figures of"
-        " the search, which change with the tolerance. Click a row to see its middle."
+        " the search, which change with the tolerance."
     )
     title = "Bridges that are not locally convex"
-    return _card(numbers, "invalid_runs", title, columns, _run_row, note)
+    return _card(numbers, "invalid_runs", title, columns, _run_row, note, is_printed=False)
 
 
 def _run_row(numbers: Numbers, at: int, number: int, run: Mapping[str, Any]) -> Element:

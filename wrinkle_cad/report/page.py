@@ -12,6 +12,7 @@ Chromium. Where it fails, the page says that the 3-D view could not start and sh
 
 from __future__ import annotations
 
+import datetime
 from base64 import b64encode
 from collections.abc import Mapping, Sequence
 from functools import cache
@@ -19,6 +20,7 @@ from hashlib import sha256
 from importlib.resources import files
 from typing import Any, Final
 
+from .header import page_header
 from .markup import Element, node, script, to_html, to_script
 from .numbers import Numbers
 from .panels import figures_panel, space_panel, strip_section, tabs
@@ -39,7 +41,11 @@ _LICENSE: Final = "three/LICENSE"
 
 
 def write_page(
-    summary: Mapping[str, Any], strips: Sequence[StripView], body: MeshView | None = None
+    summary: Mapping[str, Any],
+    strips: Sequence[StripView],
+    body: MeshView | None = None,
+    *,
+    moment: datetime.datetime | None = None,
 ) -> str:
     """Writes the page of a job.
 
@@ -47,6 +53,7 @@ def write_page(
         summary: what NAME.json holds, with ``verdict`` as ``Verdict.as_json`` gives it.
         strips: the strips in the order of ``summary["strips"]``.
         body: what the strips are sewn to.
+        moment: when the outputs were made, as it stands in them.
 
     Returns:
         The whole page.
@@ -57,7 +64,7 @@ def write_page(
     numbers = Numbers(summary)
     said = node("div", verdict_panel(numbers), figures_panel(numbers), class_="said")
     first = node("div", said, space_panel(strips, body), class_="first")
-    main = node("main", *_header(numbers), first)
+    main = node("main", page_header(numbers, moment), first)
     if len(strips) > 1:
         main.append(tabs([view.name for view in strips]))
     for index, view in enumerate(strips):
@@ -106,23 +113,6 @@ def _policy(scripts: Sequence[Element]) -> str:
         "default-src 'none'; base-uri 'none'; form-action 'none'; style-src 'unsafe-inline';"
         f" img-src data: blob:; script-src {allowed}"
     )
-
-
-def _header(numbers: Numbers) -> list[Element]:
-    made = ", ".join(
-        f"{what} {numbers.get(path)}"
-        for what, path in (("wrinkle_cad", "/versions/wrinkle-cad"), ("unit", "/input/unit"))
-        if numbers.get(path)
-    )
-    return [
-        node(
-            "header",
-            node(
-                "p", "Strip report" + (f" \N{MIDDLE DOT} {made}" if made else ""), class_="eyebrow"
-            ),
-            node("h1", str(numbers.get("/input/file") or "Strip")),
-        )
-    ]
 
 
 @cache

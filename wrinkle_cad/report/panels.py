@@ -8,7 +8,7 @@ from typing import Any, Final
 from wrinkle_cad import settings
 
 from .markup import Element, node
-from .numbers import Numbers
+from .numbers import Numbers, written
 from .views import MeshView, StripView
 
 _IDLE: Final = "Point at the strip: the same bridge lights up in every view."
@@ -27,6 +27,8 @@ _STANDPOINTS: Final = (
     ("front", "Front", "Along y"),
     ("side", "Side", "Against x"),
 )
+_PRINTED_PATTERNS: Final = 3
+"""Of the wrinkles: as many as stand on one sheet of A4."""
 _PATTERN_LAYERS: Final = (
     ("cut", "Cut line"),
     ("sew", "Sew line"),
@@ -42,13 +44,12 @@ def figures_panel(numbers: Numbers) -> Element:
     """The key figures of the wrinkle that asks most of a sheet, as tiles."""
     worst = _worst_strip(numbers)
     entry = f"/strips/{worst}"
-    p95 = node(
-        "small",
-        "mostly below ",
-        numbers.show(f"{entry}/p95_strain_percent", "%", 3),
-    )
+    strain: list[Element | str] = [numbers.show(f"{entry}/max_strain_percent", "%", 3)]
+    if written(numbers.get(f"{entry}/p95_strain_percent") or 0.0, digits=3) != "0":
+        p95 = numbers.show(f"{entry}/p95_strain_percent", "%", 3)
+        strain.append(node("small", "mostly below ", p95))
     tiles = (
-        ("Largest strain", [numbers.show(f"{entry}/max_strain_percent", "%", 3), p95]),
+        ("Largest strain", strain),
         ("Sharpest crease", _crease(numbers, entry)),
         ("Developable share", [numbers.show(f"{entry}/developable_share", "", 3)]),
         ("Smallest bend radius", _radius(numbers, entry)),
@@ -58,7 +59,7 @@ def figures_panel(numbers: Numbers) -> Element:
     shown = node(
         "dl",
         *(
-            node("div", node("dt", title), node("dd", *parts), class_="tile")
+            node("div", node("dt", title), node("dd", *parts), class_=_tile_class(parts))
             for title, parts in tiles
         ),
         class_="tiles",
@@ -67,6 +68,12 @@ def figures_panel(numbers: Numbers) -> Element:
         return shown
     words = f"Worst wrinkle: {numbers.get(f'{entry}/name')}"
     return node("section", node("h2", words, class_="head"), shown)
+
+
+def _tile_class(parts: Sequence[Element | str]) -> str:
+    """Long figures are set smaller: none is broken, and none touches its box."""
+    first = parts[0]
+    return "tile long" if len(first if isinstance(first, str) else first.text or "") > 9 else "tile"
 
 
 def _crease(numbers: Numbers, entry: str) -> list[Element | str]:
@@ -178,8 +185,10 @@ def _space_legend() -> Element:
         data_for="measure",
         hidden=True,
     )
-    hint = node("span", "Drag to turn; click, then wheel to zoom; right button to shift.")
-    return node("div", *keys, measure, hint, class_="legend")
+    mouse = "Drag to turn; click, then wheel to zoom; right button to shift."
+    touch = "Drag to turn; pinch to zoom; two fingers to shift."
+    hints = (node("span", mouse, class_="by-mouse"), node("span", touch, class_="by-touch"))
+    return node("div", *keys, measure, *hints, class_="legend")
 
 
 def tabs(names: Sequence[str]) -> Element:
@@ -196,7 +205,10 @@ def strip_section(numbers: Numbers, index: int, view: StripView) -> Element:
     parts = [_matrix_card(numbers, index, view), _curves_card(numbers, index, view)]
     if view.pieces:
         parts.append(_pattern_card(view))
-    return node("section", *parts, class_="strip-views", data_strip=str(index))
+    leading = [at for at, entry in enumerate(numbers.get("/strips")) if entry.get("role") != "band"]
+    is_printed = bool(view.pieces) and index in leading[:_PRINTED_PATTERNS]
+    kind = "strip-views" if is_printed else "strip-views screen-only"
+    return node("section", *parts, class_=kind, data_strip=str(index))
 
 
 def _zoom() -> Element:
@@ -226,7 +238,7 @@ def _matrix_card(numbers: Numbers, index: int, view: StripView) -> Element:
             class_="legend",
         ),
         node("p", *_matrix_words(numbers, index, view), class_="note"),
-        class_="card",
+        class_="card screen-only",
     )
 
 
@@ -276,7 +288,7 @@ def _curves_card(numbers: Numbers, index: int, view: StripView) -> Element:
             " developable with folds.",
             class_="note",
         ),
-        class_="card",
+        class_="card screen-only",
     )
 
 

@@ -8,7 +8,7 @@ from typing import Any, Final
 from .help_tables import gaps_card, runs_card, trials_card
 from .markup import Element, node
 from .numbers import TIMES, Numbers
-from .table import card, cell, strip_name, table
+from .table import card, cell, print_note, strip_name, table
 
 _SIGN: Final = {
     "developable": "\N{CHECK MARK}",
@@ -119,7 +119,8 @@ def _taken_card(numbers: Numbers) -> Element | None:
     reasons = numbers.get("/input/reasons")
     if not reasons:
         return None
-    return card("Taken from the file", node("ul", *(node("li", line) for line in reasons)))
+    lines = node("ul", *(node("li", line) for line in reasons))
+    return card("Taken from the file", lines, is_printed=False)
 
 
 def _strips_card(numbers: Numbers) -> Element:
@@ -202,7 +203,7 @@ def _findings_card(numbers: Numbers) -> Element | None:
         )
         for finding in findings
     ]
-    return card("Findings", node("ul", *items, class_="findings"))
+    return card("Findings", node("ul", *items, class_="findings"), print_note(len(items)))
 
 
 def _stitch_card(numbers: Numbers) -> Element | None:
@@ -236,7 +237,7 @@ def _angles_card(numbers: Numbers) -> Element | None:
         )
         name = cell(seam["seam"], kind="name")
         rows.append(node("tr", name, *(cell(figure, right=True) for figure in shown)))
-    return card("Angles at the seams", table(columns, rows))
+    return card("Angles at the seams", table(columns, rows), is_printed=False)
 
 
 def _pairs_card(
@@ -253,7 +254,7 @@ def _pairs_card(
         is_number = isinstance(value, int | float) and not isinstance(value, bool)
         shown = numbers.show(f"{path}/{key}", unit, digits) if is_number else _words(value)
         rows.append(node("div", node("dt", key.replace("_", " ")), node("dd", shown)))
-    return card(title, node("dl", *rows, class_="pairs"))
+    return card(title, node("dl", *rows, class_="pairs"), is_printed=False)
 
 
 def _words(value: Any) -> str:

@@ -52,7 +52,9 @@ def read(source: Source, unit: str | None) -> CadFile:
     shapes = listed(source, take_apart(shape), check_unit(source, (), unit))
     if not shapes:
         raise source.fail("no geometry: the shape in it is empty. Save it again.")
-    return CadFile(source.path, BREP, unit_words((), unit), shapes, source.is_compressed)
+    return CadFile(
+        source.path, BREP, unit_words((), unit), shapes, source.is_compressed, source.sha256
+    )
 
 
 def _check_text(source: Source) -> None:

@@ -67,7 +67,7 @@ def read(source: Source, unit: str | None) -> CadFile:
     if not shapes:
         raise source.fail("no geometry: no curve, face or solid in it. Export it again.")
     words = unit_words(declared, unit)
-    return CadFile(source.path, IGES, words, shapes, source.is_compressed)
+    return CadFile(source.path, IGES, words, shapes, source.is_compressed, source.sha256)
 
 
 def _check_records(source: Source, text: bytes) -> None:

@@ -62,7 +62,7 @@ def read(source: Source, unit: str | None) -> CadFile:
     if not any(shape.measure > 0.0 for shape in shapes):
         raise source.fail(why_no_shape(text))
     words = unit_words(declared, unit)
-    return CadFile(source.path, STEP, words, shapes, source.is_compressed)
+    return CadFile(source.path, STEP, words, shapes, source.is_compressed, source.sha256)
 
 
 def _shapes(source: Source, text: bytes, mm_per_unit: float) -> tuple[NamedShape, ...]:

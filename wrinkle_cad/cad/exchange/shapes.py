@@ -127,6 +127,8 @@ class CadFile:
     """In the file's order; ``shapes[i].index == i + 1``."""
     is_compressed: bool = False
     """Whether the file was compressed with gzip."""
+    sha256: str = ""
+    """Of the file as it is stored: 64 hexadecimal digits."""
 
     def __repr__(self) -> str:
         return f"CadFile({self.path.name!r}, {self.format}, {self.unit}, {len(self.shapes)} shapes)"

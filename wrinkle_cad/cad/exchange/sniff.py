@@ -7,6 +7,7 @@ bytes are in memory before the kernel's 0.7 s import begins.
 
 from __future__ import annotations
 
+import hashlib
 import re
 import zlib
 from dataclasses import dataclass
@@ -58,6 +59,8 @@ class Source:
     """The file's bytes, decompressed, without a byte order mark."""
     is_compressed: bool
     """Whether the file was compressed with gzip, whatever it is called."""
+    sha256: str
+    """Of the file as it is stored: 64 hexadecimal digits."""
 
     def fail(self, found: str) -> InputError:
         """Returns the error that names this file and, if it was compressed, says so."""
@@ -92,7 +95,8 @@ def read_source(path: Path, *, size_limit: int = settings.FILE_SIZE_LIMIT) -> So
             f"Cannot read {path.name}: a git-LFS pointer file, the CAD file itself was never"
             " fetched. Run 'git lfs pull' where it came from."
         )
-    return Source(path, _format_of(path, content), content, is_compressed)
+    digest = hashlib.sha256(packed).hexdigest()
+    return Source(path, _format_of(path, content), content, is_compressed, digest)
 
 
 def _read(path: Path, size_limit: int) -> bytes:

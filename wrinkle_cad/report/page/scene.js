@@ -13,7 +13,7 @@ Report.space = (THREE, canvas, panel) => {
   camera.add(sun);
   sun.position.set(0.5, 0.9, 1);
   const standpoint = Report.standpoint(THREE, camera, controls);
-  let waiting = false, colorBy = "state", solid = null, leather = null, inspectsBands = false, shownFrom = "whole", clearest = null;
+  let waiting = false, colorBy = "state", solid = null, leather = null, inspectsBands = false, shownFrom = "whole", clearest = null, isTurned = false;
   const marker = new THREE.Mesh(new THREE.CylinderGeometry(1, 1, 1, 12), new THREE.MeshBasicMaterial());
   marker.visible = false;
   marker.renderOrder = 2;
@@ -203,7 +203,8 @@ Report.space = (THREE, canvas, panel) => {
     renderer.setSize(width, height, false);
     camera.aspect = width / height;
     camera.updateProjectionMatrix();
-    request();
+    if (isTurned) request();
+    else frame();
   }
   function highlight(selected) {
     marker.visible = Boolean(selected);
@@ -244,6 +245,7 @@ Report.space = (THREE, canvas, panel) => {
   canvas.addEventListener("blur", () => { controls.enableZoom = false; });
   canvas.addEventListener("touchstart", () => { controls.enableZoom = true; }, { passive: true });
   controls.addEventListener("change", request);
+  controls.addEventListener("start", () => { isTurned = true; });
 
   panel.querySelectorAll("[name=color-by]").forEach((input) => input.addEventListener("change", () => {
     colorBy = input.value;
@@ -257,13 +259,14 @@ Report.space = (THREE, canvas, panel) => {
   }));
   panel.querySelectorAll("[data-view]").forEach((button) => button.addEventListener("click", () => {
     shownFrom = button.dataset.view;
+    isTurned = false;
     frame();
   }));
   new ResizeObserver(resize).observe(canvas.parentElement);
   Report.onSelect(highlight);
   Report.onRedraw(() => { paint(); render(); });
-  resize();
   showParts();
+  resize();
   paint();
   frame();
   if (Report.selected()) highlight(Report.selected());
