@@ -275,11 +275,13 @@ def test_a_cut_brep_is_called_truncated(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("old", "new", "message"),
     [
-        (b"\nEd\n", b"\nEx\n", "cannot be understood"),
-        (b"\n0101101\n", b"\n01011x1\n", "cannot be understood"),
-        (b"\n1e-07\n", b"\nnan\n", "cannot be understood"),
+        (b"\nEd\n", b"\nEx\n", "begins with 'Ex', which is no kind of shape"),
+        (b"\n0101101\n", b"\n01011x1\n", "has '01011x1' where its seven flags belong"),
+        (b"\n1e-07\n", b"\nnan\n", "has 'nan' where a number of at most"),
+        (b"\n1e-07\n", b"\n", "has"),
+        (b"\n0 0\n", b"\n", r"has '\*' where a whole number"),
         (b"+47 0", b"+99 0", "consists of a shape that the file does not have"),
-        (b"\nTShapes 47", b"\nTShapes 48", "shape 48 of 48 cannot be understood"),
+        (b"\nTShapes 47", b"\nTShapes 48", "shape 48 of 48 begins with"),
     ],
 )
 def test_a_brep_whose_shapes_are_damaged_says_which(

@@ -11,9 +11,10 @@ from OCP.BRep import BRep_Builder
 from OCP.BRepTools import BRepTools
 from OCP.TopoDS import TopoDS_Shape
 
-from wrinkle_cad.cad.kernel.steps import KERNEL_ERRORS
-from wrinkle_cad.files.names import error_words
+from wrinkle_cad.cad.kernel.steps import KERNEL_ERRORS, kernel_words
 
+from .brep_geometry import geometry_sizes
+from .brep_shapes import check_shapes
 from .collect import listed, take_apart
 from .shapes import CadFile
 from .sniff import BREP, Source
@@ -24,15 +25,6 @@ _BINARY: Final = b"Open CASCADE Topology V"
 _SECTIONS: Final = (b"Locations", b"Curve2ds", b"Curves", b"Surfaces", b"TShapes")
 # The last line of a text file refers to the shape that the file is about.
 _LAST_LINE: Final = re.compile(rb"\n\s*[-+]\d+\s+\d+\s*\Z")
-
-_SHAPES: Final = re.compile(rb"\nTShapes (\d+)\s")
-# Kind, geometry (numbers and continuities), seven flags, the shapes that it consists of.
-_SHAPE: Final = re.compile(
-    rb"\s*(?:Ve|Ed|Wi|Fa|Sh|So|CS|Co)\s+"
-    rb"(?:(?:[-+]?(?:\d++\.?\d*+|\.\d++)(?:[eE][-+]?\d++)?(?:C[0-3N]|G[12])?|C[0-3N]|G[12])\s++)*?"
-    rb"[01]{7}\s+((?:[-+]\d+\s+\d+\s+)*)\*"
-)
-_PART: Final = re.compile(rb"[-+](\d+)\s+\d+\s")
 
 
 def read(source: Source, unit: str | None) -> CadFile:
@@ -63,25 +55,10 @@ def _check_text(source: Source) -> None:
     if missing or not _LAST_LINE.search(text[-4096:]):
         what = f"section {missing[0]} is missing" if missing else "its last line is missing"
         raise source.fail(f"truncated: {what}. Copy or save it again.")
-    fault = _shapes_fault(text)
-    if fault is not None:
-        raise source.fail(f"damaged: {fault}. Save it again.")
-
-
-def _shapes_fault(text: bytes) -> str | None:
-    """Returns what is wrong with the table of shapes, whose gaps the kernel does not survive."""
-    head = _SHAPES.search(text)
-    if head is None:
-        return "its table of shapes has no length"
-    count, at = int(head[1]), head.end()
-    for number in range(1, count + 1):
-        found = _SHAPE.match(text, at)
-        if found is None:
-            return f"shape {number} of {count} cannot be understood"
-        if any(not 0 < int(part) <= count for part in _PART.findall(found[1])):
-            return f"shape {number} of {count} consists of a shape that the file does not have"
-        at = found.end()
-    return None
+    try:
+        check_shapes(text, geometry_sizes(text))
+    except ValueError as fault:
+        raise source.fail(f"damaged: {fault}. Save it again.") from None
 
 
 def _shape(source: Source, *, is_binary: bool) -> TopoDS_Shape:
@@ -95,7 +72,7 @@ def _shape(source: Source, *, is_binary: bool) -> TopoDS_Shape:
             BRepTools.Read_s(shape, io.BytesIO(content.replace(b"\r", b"\n")), BRep_Builder())
     except KERNEL_ERRORS as error:
         raise source.fail(
-            f"damaged: the CAD kernel fails on it ({error_words(error)}). Export it again."
+            f"damaged: the CAD kernel fails on it ({kernel_words(error)}). Export it again."
         ) from error
     if shape.IsNull():
         raise source.fail(

@@ -16,8 +16,7 @@ from OCP.TopLoc import TopLoc_Location
 from OCP.TopoDS import TopoDS_Shape
 
 from wrinkle_cad.cad.exchange.step.text import plain_text
-from wrinkle_cad.cad.kernel.steps import KERNEL_ERRORS
-from wrinkle_cad.files.names import error_words
+from wrinkle_cad.cad.kernel.steps import KERNEL_ERRORS, kernel_words
 
 from .collect import listed
 from .iges_faults import entities_fault, sequence_fault
@@ -128,7 +127,7 @@ def _leaves(source: Source, text: bytes) -> tuple[list[Leaf], Marker]:
         return leaves, _marker(reader)
     except KERNEL_ERRORS as error:
         raise source.fail(
-            f"damaged: the CAD kernel fails on it ({error_words(error)}). Export it again."
+            f"damaged: the CAD kernel fails on it ({kernel_words(error)}). Export it again."
         ) from error
 
 

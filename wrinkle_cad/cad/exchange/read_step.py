@@ -19,8 +19,7 @@ from wrinkle_cad.cad.exchange.step.names import (
 )
 from wrinkle_cad.cad.exchange.step.readable import with_construction, with_wires
 from wrinkle_cad.cad.exchange.step.text import check_step, length_units, plain_text, why_no_shape
-from wrinkle_cad.cad.kernel.steps import KERNEL_ERRORS
-from wrinkle_cad.files.names import error_words
+from wrinkle_cad.cad.kernel.steps import KERNEL_ERRORS, kernel_words
 
 from .collect import listed
 from .naming import Marker, found_in
@@ -91,7 +90,7 @@ def _leaves(source: Source, marked: bytes, text: bytes) -> tuple[list[Leaf], Mar
         return leaves_of(document), _marker(reader)
     except KERNEL_ERRORS as error:
         raise source.fail(
-            f"damaged: the CAD kernel fails on it ({error_words(error)}). Export it again."
+            f"damaged: the CAD kernel fails on it ({kernel_words(error)}). Export it again."
         ) from error
 
 

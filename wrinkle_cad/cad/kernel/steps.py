@@ -2,10 +2,26 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator
 from contextlib import contextmanager
+from typing import Final
 
-from OCP import Geom, Standard, StdFail, TopoDS, Transfer, gp
+from OCP import (
+    BRepExtrema,
+    Geom,
+    Geom2d,
+    GProp,
+    Interface,
+    LProp,
+    Standard,
+    StdFail,
+    Storage,
+    TopoDS,
+    Transfer,
+    gp,
+)
+from OCP import math as kernel_math
 
 from wrinkle_cad.errors import CadError
 from wrinkle_cad.files.names import error_words
@@ -14,12 +30,29 @@ from wrinkle_cad.files.names import error_words
 KERNEL_ERRORS: tuple[type[Exception], ...] = (
     *(
         kind
-        for module in (Standard, StdFail, TopoDS, Transfer, Geom, gp)
+        for module in (
+            BRepExtrema,
+            Geom,
+            Geom2d,
+            GProp,
+            Interface,
+            LProp,
+            Standard,
+            StdFail,
+            Storage,
+            TopoDS,
+            Transfer,
+            gp,
+            kernel_math,
+        )
         for kind in vars(module).values()
         if isinstance(kind, type) and issubclass(kind, Exception)
     ),
     RuntimeError,
 )
+
+# Which function of the kernel failed, and where in memory: other digits at every run.
+_PLACE: Final = re.compile(r"EXCEPTION in \S+?::\w+\([^)]*\)\s*(?:0x[0-9a-f]+)?\s*:?\s*")
 
 
 @contextmanager
@@ -28,5 +61,15 @@ def kernel_step(step: str) -> Iterator[None]:
     try:
         yield
     except KERNEL_ERRORS as error:
-        found = f"the CAD kernel failed ({error_words(error)}). Check the input shape."
+        found = f"the CAD kernel failed ({kernel_words(error)}). Check the input shape."
         raise CadError(step, found) from error
+
+
+def kernel_words(error: BaseException) -> str:
+    """Returns what an exception of the kernel says, on one line, without addresses in memory.
+
+    Example:
+        >>> kernel_words(RuntimeError("EXCEPTION in A::B(..) 0x55a0 : too few poles"))
+        'too few poles'
+    """
+    return _PLACE.sub("", error_words(error)).strip() or type(error).__name__
