@@ -120,3 +120,19 @@ def test_two_files_for_one_name_are_refused_and_removed(tmp_path: Path) -> None:
     with pytest.raises(ValueError, match="same name"):
         replace_together([(write_aside(final, b"1"), final), (write_aside(final, b"2"), final)])
     assert names_in(tmp_path) == set()
+
+
+def test_a_file_that_is_exchanged_while_it_is_asked_about_is_kept(tmp_path: Path) -> None:
+    final = tmp_path / "a.step"
+    final.write_text("ours")
+
+    def exchanged(path: Path) -> bool:
+        (tmp_path / "theirs").write_text("somebody's")
+        (tmp_path / "theirs").replace(path)
+        return True
+
+    pairs = [(write_aside(final, b"new"), final), (write_aside(final, b"x"), tmp_path / "a.dxf")]
+    with pytest.raises(FileExistsError):
+        replace_together(pairs, may_replace=exchanged)
+    assert final.read_text() == "somebody's"
+    assert names_in(tmp_path) == {"a.step"}

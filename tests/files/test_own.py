@@ -73,3 +73,11 @@ def test_a_beginning_that_a_power_cut_tore_is_ours(tmp_path: Path, length: int) 
     path = tmp_path / "batch.log"
     path.write_bytes(MARK[0][:length])
     check_own(path, MARK)
+
+
+def test_a_torn_beginning_is_begun_again(tmp_path: Path) -> None:
+    path = tmp_path / "batch.log"
+    path.write_bytes(MARK[0][:3])
+    append_own(path, b"first\n", MARK)
+    append_own(path, b"second\n", MARK)
+    assert path.read_bytes() == MARK[0] + b"first\nsecond\n"

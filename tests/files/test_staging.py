@@ -146,6 +146,45 @@ def test_a_folder_of_that_name_without_our_mark_is_nobodys_leftover(
     assert not list(leftovers(tmp_path))
 
 
+@pytest.mark.parametrize("mark", [None, b"", MARK[:10]])
+def test_what_was_killed_while_it_marked_its_folder_is_cleared(
+    tmp_path: Path, mark: bytes | None
+) -> None:
+    folder = tmp_path / f"{PART_PREFIX}x"
+    folder.mkdir()
+    if mark is not None:
+        (folder / MARK_NAME).write_bytes(mark)
+    clear_abandoned(tmp_path)
+    assert not folder.exists()
+
+
+def test_a_folder_with_a_torn_mark_and_anything_else_in_it_is_kept(tmp_path: Path) -> None:
+    folder = tmp_path / f"{PART_PREFIX}x"
+    folder.mkdir()
+    (folder / MARK_NAME).write_bytes(MARK[:10])
+    (folder / "mine").write_text("somebody's")
+    clear_abandoned(tmp_path)
+    assert (folder / "mine").exists()
+
+
+def test_a_folder_that_another_process_is_marking_is_not_cleared_meanwhile(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    real = os.open
+
+    def slow(path: object, *arguments: int, **keywords: int) -> int:
+        if str(path).endswith(MARK_NAME) and arguments[0] & os.O_CREAT:
+            # A second process that clears up finds the folder without a mark.
+            code = "import sys; from pathlib import Path; from wrinkle_cad.files import staging;"
+            code += "staging.clear_abandoned(Path(sys.argv[1]))"
+            subprocess.run([sys.executable, "-c", code, str(tmp_path)], check=True)
+        return real(path, *arguments, **keywords)  # type: ignore[arg-type]
+
+    monkeypatch.setattr(os, "open", slow)
+    staging = open_staging(tmp_path)
+    assert (staging / MARK_NAME).read_bytes() == MARK
+
+
 def test_what_a_killed_process_left_is_cleared_and_what_runs_is_not(tmp_path: Path) -> None:
     mine = open_staging(tmp_path)
     code = (

@@ -112,11 +112,15 @@ def replace_together(
     kept: dict[Path, Path | None] = {}
     try:
         for part, final in todo:
-            is_free = not os.path.lexists(final)
+            asked_about = _identity(final)
+            is_free = asked_about is None
             if not is_free and may_replace is not None and not may_replace(final):
-                raise FileExistsError(errno.EEXIST, "a file of somebody else is there", str(final))
+                raise _foreign(final)
             if final.is_dir() and not final.is_symlink():
                 raise IsADirectoryError(errno.EISDIR, os.strerror(errno.EISDIR), str(final))
+            if may_replace is not None and _identity(final) != asked_about:
+                # Another one by now: telling whose a file is takes as long as reading it.
+                raise _foreign(final)
             kept[final] = None if is_free or len(todo) == 1 else _keep(final, part)
             if is_free and may_replace is not None:
                 _take_free_name(part, final)
@@ -132,6 +136,19 @@ def replace_together(
     _remove(backup for backup in kept.values() if backup is not None)
     for folder in sorted({final.parent for final in finals}):
         _flush_folder(folder)
+
+
+def _identity(path: Path) -> tuple[int, int, int, int] | None:
+    """What tells a file from any other, and from itself before a change; None where none is."""
+    try:
+        found = path.lstat()
+    except (FileNotFoundError, NotADirectoryError):
+        return None
+    return found.st_dev, found.st_ino, found.st_size, found.st_mtime_ns
+
+
+def _foreign(path: Path) -> FileExistsError:
+    return FileExistsError(errno.EEXIST, "a file of somebody else is there", str(path))
 
 
 def _take_free_name(part: Path, final: Path) -> None:

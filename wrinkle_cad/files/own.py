@@ -73,6 +73,8 @@ def write_own(path: Path, content: bytes, beginnings: Sequence[bytes]) -> None:
 def open_own(path: Path, beginnings: Sequence[bytes]) -> int:
     """Opens a file of ours to read and write, made when missing; links are not followed.
 
+    One that a power cut left with a torn beginning is begun again: nothing else was in it.
+
     Returns:
         A handle of the system; whoever asked for it closes it.
 
@@ -86,6 +88,10 @@ def open_own(path: Path, beginnings: Sequence[bytes]) -> int:
     if not stat.S_ISREG(found.st_mode) or found.st_nlink > 1:
         os.close(handle)
         raise _foreign(path, "is no regular file of one name")
+    head = os.pread(handle, max(map(len, beginnings)), 0)
+    if not any(head.startswith(own) for own in beginnings):
+        # Torn: what is added to it now would follow a beginning that is nobody's.
+        os.ftruncate(handle, 0)
     return handle
 
 

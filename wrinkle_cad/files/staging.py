@@ -22,7 +22,7 @@ from pathlib import Path
 from typing import Final
 
 from .atomic import replace_together
-from .regular import read_regular
+from .regular import is_regular, read_regular
 
 PART_PREFIX: Final = ".wrinkle_cad-part-"
 READY_PREFIX: Final = ".wrinkle_cad-ready-"
@@ -42,11 +42,16 @@ def open_staging(folder: Path) -> Path:
         OSError: the folder cannot be made or written to.
     """
     folder.mkdir(parents=True, exist_ok=True)
-    staging = Path(tempfile.mkdtemp(prefix=PART_PREFIX, dir=folder))
-    handle = os.open(staging / MARK_NAME, os.O_RDWR | os.O_CREAT | os.O_EXCL | _CLOSED, 0o600)
-    _lock(handle)
-    os.write(handle, MARK)
-    _held[staging] = handle
+    with _while_marking(folder, is_alone=False):
+        staging = Path(tempfile.mkdtemp(prefix=PART_PREFIX, dir=folder))
+        handle = os.open(staging / MARK_NAME, os.O_RDWR | os.O_CREAT | os.O_EXCL | _CLOSED, 0o600)
+        _held[staging] = handle
+        _lock(handle)
+        try:
+            os.write(handle, MARK)
+        except OSError:
+            discard_staging(staging)
+            raise
     return staging
 
 
@@ -172,16 +177,42 @@ _CLOSED: Final = getattr(os, "O_CLOEXEC", 0) | getattr(os, "O_NOFOLLOW", 0)
 
 
 def _lock(handle: int) -> bool:
-    """Whether this process has the lock of an open file now; True where there are no locks."""
+    """Whether this process has the lock of an open file now; False where there are no locks."""
+    return _flock(handle, is_alone=True)
+
+
+def _flock(handle: int, *, is_alone: bool) -> bool:
     try:
         import fcntl
     except ImportError:
         return False
     try:
-        fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        # Never waited for: anybody may hold a lock on a file that he can read.
+        fcntl.flock(handle, (fcntl.LOCK_EX if is_alone else fcntl.LOCK_SH) | fcntl.LOCK_NB)
     except OSError:
         return False
     return True
+
+
+@contextlib.contextmanager
+def _while_marking(folder: Path, *, is_alone: bool) -> Iterator[bool]:
+    """Holds a lock on a folder of outputs while a hidden folder in it is made and marked.
+
+    Without it, whoever clears up could not tell a folder that has no mark yet from one whose
+    process was killed before it had one.
+
+    Args:
+        folder: of the outputs.
+        is_alone: whether nobody may be making one at the same time.
+
+    Yields:
+        Whether the lock was given; it is not where a system has none.
+    """
+    handle = os.open(folder, os.O_RDONLY | getattr(os, "O_CLOEXEC", 0))
+    try:
+        yield _flock(handle, is_alone=is_alone)
+    finally:
+        os.close(handle)
 
 
 def _is_abandoned(staging: Path) -> bool:
@@ -193,17 +224,33 @@ def _is_abandoned(staging: Path) -> bool:
             return False
         handle = os.open(staging / MARK_NAME, os.O_RDONLY | os.O_NONBLOCK | _CLOSED)
     except FileNotFoundError:
-        # Killed before it was marked: nothing is in it, or it is not ours.
-        return not any(staging.iterdir())
+        return _was_never_marked(staging)
     except OSError:
         return False
     try:
-        is_ours = stat.S_ISREG(os.fstat(handle).st_mode) and os.read(handle, len(MARK) + 1) == MARK
-        return is_ours and _lock(handle)
+        if not stat.S_ISREG(os.fstat(handle).st_mode):
+            return False
+        mark = os.read(handle, len(MARK) + 1)
+        if mark == MARK:
+            return _lock(handle)
     except OSError:
         return False
     finally:
         os.close(handle)
+    return MARK.startswith(mark) and _was_never_marked(staging)
+
+
+def _was_never_marked(staging: Path) -> bool:
+    """Whether a hidden folder's process was killed before it had marked it in full."""
+    try:
+        with _while_marking(staging.parent, is_alone=True) as is_alone:
+            names = {path.name for path in staging.iterdir()}
+            mark = staging / MARK_NAME
+            is_torn = not names or (is_regular(mark) and mark.stat().st_size < len(MARK))
+            # Anything else in it came after a whole mark, or is somebody's.
+            return is_alone and is_torn and names <= {MARK_NAME}
+    except OSError:
+        return False
 
 
 def _record_line(ready: Path) -> str:

@@ -23,7 +23,8 @@ def read_toml(path: Path) -> dict[str, Any]:
     """
     try:
         content = read_regular(path, size_limit=SIZE_LIMIT)
-        return tomllib.loads(content.decode("utf-8"))
+        # Some editors put a mark of the encoding before the text.
+        return tomllib.loads(content.decode("utf-8-sig"))
     except RecursionError as error:
         raise _unreadable(path, "its values are nested too deeply") from error
     except OSError as error:

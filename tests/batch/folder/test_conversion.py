@@ -12,11 +12,16 @@ from pathlib import Path
 import pytest
 
 from tests.batch.conftest import Bench
-from tests.batch.stand_ins import KINDS, limits_missed_job
+from tests.batch.stand_ins import KINDS, job_by_content, limits_missed_job
 from wrinkle_cad.batch.folder import delivery
+from wrinkle_cad.batch.folder.conversion import ConversionOptions, convert
 from wrinkle_cad.batch.folder.events import BatchSummary, FileFinished, FileSkipped
+from wrinkle_cad.batch.folder.inputs import find_sources
 from wrinkle_cad.batch.folder.lock import locked_folder
 from wrinkle_cad.batch.folder.manifest import Manifest
+from wrinkle_cad.batch.folder.plan import plan_batch
+from wrinkle_cad.batch.workers.ending import WorkerLimits
+from wrinkle_cad.batch.workers.pool import WorkerPool
 from wrinkle_cad.errors import ExportError, InputError
 from wrinkle_cad.files import staging
 
@@ -318,3 +323,46 @@ def test_a_move_that_stops_half_way_is_finished_by_the_next_run(
 def test_a_size_or_a_name_that_ends_like_a_file_is_text(bench: Bench) -> None:
     bench.put(a="1")
     assert counts(bench.run(keywords={"size": "42.toml", "name": "a.toml"})) == (1, 0, 0)
+
+
+def test_files_that_an_interrupted_batch_did_not_come_to_are_shown_as_they_were_left(
+    bench: Bench,
+) -> None:
+    bench.put(a="1", b="fail@read", c="2")
+    bench.run()
+    bench.put(d="3")
+
+    def interrupt(event: object) -> None:
+        if isinstance(event, FileSkipped):
+            raise KeyboardInterrupt
+
+    planned = plan_batch(find_sources([str(bench.inputs)], bench.outputs).files, bench.outputs)
+    options = ConversionOptions(job_function=job_by_content)
+    with pytest.raises(KeyboardInterrupt):
+        convert(planned, bench.outputs, WorkerPool(1, WorkerLimits()), interrupt, options)
+    page = (bench.outputs / "index.html").read_text()
+    assert page.count("not come to; done by an earlier batch") == 1
+    assert page.count("not come to; failed in an earlier batch: There are no curves.") == 1
+    assert 'href="a.html"' in page
+    table = (bench.outputs / "summary.csv").read_text(encoding="utf-8-sig").splitlines()
+    assert [line.split(",")[1] for line in table[1:]] == ["done", *["waiting"] * 3]
+
+
+def test_earlier_outputs_that_cannot_be_set_aside_cost_no_other_file(
+    bench: Bench, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    bench.put(a="1", b="2")
+    bench.run()
+    bench.put(a="fail@read", b="3")
+
+    def refuse(path: Path, target: Path) -> Path:
+        raise PermissionError(errno.EACCES, "Permission denied", str(path))
+
+    def only_outdated(path: Path, target: Path) -> Path:
+        return refuse(path, target) if str(target).endswith(".outdated") else real(path, target)
+
+    real = Path.replace
+    monkeypatch.setattr(Path, "replace", only_outdated)
+    summary = bench.run()
+    assert (summary.done, summary.failed) == (1, 1)
+    assert "NOT marked as outdated (Permission denied)" in (bench.outputs / "batch.log").read_text()

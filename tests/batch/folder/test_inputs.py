@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import os
+import threading
 from pathlib import Path
 
 import pytest
 
+from wrinkle_cad.batch.folder import inputs
 from wrinkle_cad.batch.folder.inputs import find_sources
 from wrinkle_cad.errors import InputError
 
@@ -102,3 +104,22 @@ def test_a_folder_cannot_be_input_and_output(tmp_path: Path) -> None:
     put(tmp_path, "out/a.step")
     with pytest.raises(InputError, match="inputs are never written to"):
         find_sources([str(tmp_path / "out")], tmp_path / "out")
+
+
+def test_a_folder_that_does_not_answer_is_a_sentence(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (tmp_path / "in" / "share").mkdir(parents=True)
+    (tmp_path / "in" / "a.step").write_text("1")
+    answered, real = threading.Event(), os.scandir
+
+    def stalled(path: str) -> object:
+        if str(path).endswith("share"):
+            answered.wait(30.0)
+        return real(path)
+
+    monkeypatch.setattr(os, "scandir", stalled)
+    monkeypatch.setattr(inputs, "STALL_S", 0.2)
+    with pytest.raises(InputError, match=r"stalls at .*nothing came for 0\.2 s"):
+        find_sources([str(tmp_path / "in")], tmp_path / "out")
+    answered.set()

@@ -76,6 +76,16 @@ HOSTILE_LINES = (
     '{"schema": 1, "seconds": ' + "[" * 50_000,
     '{"schema": 1, "figures": ' + "9" * 5000 + "}",
     "\\udcff",
+    *(
+        '{"schema": 1, "key": "a", "input": "a.step", "input_sha256": "", "settings_sha256": "", '
+        f'"outcome": "done", "{name}": {value}}}'
+        for name in ("versions", "seconds", "figures", "outputs", "missed_limits", "message")
+        for value in ("[1]", "5", '"text"', "{}", "null", "true", "[[]]", '{"a": [1]}')
+        # What is left out here is of the form of a record.
+        if (name, value) not in (("message", '"text"'), ("missed_limits", '"text"'))
+        and (value != "{}" or name == "message")
+        and (value != '{"a": [1]}' or name != "missed_limits")
+    ),
 )
 
 
@@ -91,6 +101,19 @@ def test_hostile_lines_in_a_manifest_are_left_out(bench: Bench, tmp_path: Path) 
     assert bench.run().done == 1
     assert victim.read_text() == "somebody's"
     assert "unreadable lines left out" in (bench.outputs / "batch.log").read_text()
+
+
+@pytest.mark.parametrize("name", ["manifest.jsonl", "batch.log"])
+def test_a_file_whose_beginning_a_power_cut_tore_is_begun_again(bench: Bench, name: str) -> None:
+    bench.put(a="1", b="2")
+    bench.run()
+    whole = (bench.outputs / name).read_bytes()
+    (bench.outputs / name).write_bytes(whole[:9])
+    for output in bench.files():
+        (bench.outputs / output).unlink()
+    assert bench.run().left == 0
+    assert (bench.outputs / name).read_bytes().startswith(whole.partition(b"\n")[0])
+    assert bench.run().skipped == 2
 
 
 def test_a_file_that_would_take_the_pages_name_is_told_so(bench: Bench) -> None:

@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+import os
+import threading
 from pathlib import Path
 
 import pytest
 
+from wrinkle_cad.batch.folder import plan as planning
 from wrinkle_cad.batch.folder.inputs import find_sources
 from wrinkle_cad.batch.folder.plan import PlannedJob, plan_batch
 from wrinkle_cad.errors import JobError
@@ -125,3 +128,43 @@ def test_a_link_that_leads_out_of_the_output_folder_is_refused(tmp_path: Path) -
     (tmp_path / "elsewhere").mkdir()
     (tmp_path / "out/x").symlink_to(tmp_path / "elsewhere", target_is_directory=True)
     assert "leads out" in plan(tmp_path)["x/a.step"].refusal
+
+
+def test_settings_on_a_share_that_does_not_answer_cost_the_file_they_are_for(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    answered, real = threading.Event(), os.path.lexists
+
+    def stalled(path: Path) -> bool:
+        if "away" in Path(path).parts:
+            answered.wait(30.0)
+        return real(path)
+
+    monkeypatch.setattr(os.path, "lexists", stalled)
+    monkeypatch.setattr(planning, "STALL_S", 0.2)
+    for name in ("here", "away"):
+        (tmp_path / name).mkdir()
+        (tmp_path / name / "a.step").write_text("1")
+    found = find_sources([str(tmp_path / "here"), str(tmp_path / "away")], tmp_path / "out")
+    refusals = {
+        entry.source.folder.name: entry.refusal
+        for entry in plan_batch(found.files, tmp_path / "out")
+    }
+    answered.set()
+    assert refusals["here"] == ""
+    assert "nothing for 0.2 s" in refusals["away"]
+
+
+def test_a_mark_of_the_encoding_before_settings_is_no_part_of_them(tmp_path: Path) -> None:
+    (tmp_path / "a.step").write_text("1")
+    (tmp_path / "a.job.toml").write_bytes(b"\xef\xbb\xbftolerance = 0.25")
+    (entry,) = plan_batch(find_sources([str(tmp_path)], tmp_path / "out").files, tmp_path / "out")
+    assert entry.job.tolerance == 0.25
+
+
+@pytest.mark.parametrize("line", ["name = 5", 'name = ["a"]', "input = 5", 'input = ["a"]'])
+def test_a_name_or_an_input_that_is_no_text_is_one_sentence(tmp_path: Path, line: str) -> None:
+    (tmp_path / "a.step").write_text("1")
+    (tmp_path / "a.job.toml").write_text(line)
+    (entry,) = plan_batch(find_sources([str(tmp_path)], tmp_path / "out").files, tmp_path / "out")
+    assert entry.refusal.startswith(f"{line.split()[0]} cannot be ")

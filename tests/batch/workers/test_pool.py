@@ -6,13 +6,15 @@ import json
 import os
 import signal
 import time
+from multiprocessing.process import BaseProcess
 from pathlib import Path
 
 import psutil
 import pytest
 
 from tests.batch.conftest import Bench
-from tests.batch.stand_ins import KINDS, PHASES, talkative_job, worker_id_job
+from tests.batch.processes import assert_all_end
+from tests.batch.stand_ins import KINDS, PHASES, job_by_content, talkative_job, worker_id_job
 from wrinkle_cad.batch.folder.events import FileFinished, FilePhase
 from wrinkle_cad.batch.folder.manifest import Record
 from wrinkle_cad.batch.workers.ending import WorkerLimits
@@ -157,6 +159,30 @@ def test_a_worker_that_dies_idle_costs_nothing(tmp_path: Path) -> None:
         assert len(set(pids)) == 3
     finally:
         pool.kill()
+
+
+def test_an_interrupt_while_a_worker_starts_leaves_no_process(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    source = tmp_path / "a.step"
+    source.write_text("hang@read")
+    task = Task(job=Job(input=source, output_dir=tmp_path), job_function=job_by_content)
+    real, started = BaseProcess.start, []
+
+    def interrupted(process: BaseProcess) -> None:
+        os.kill(os.getpid(), signal.SIGINT)
+        real(process)
+        started.append(psutil.Process(process.pid))
+        os.kill(os.getpid(), signal.SIGINT)
+
+    monkeypatch.setattr(BaseProcess, "start", interrupted)
+    pool = WorkerPool(1, LIMITS)
+    with pytest.raises(KeyboardInterrupt):
+        pool.give(0, task)
+    assert len(started) == 1, "the start itself is not interrupted"
+    pool.kill()
+    assert_all_end(started)
+    assert signal.getsignal(signal.SIGINT) is signal.default_int_handler
 
 
 def test_closing_lets_idle_workers_go(tmp_path: Path) -> None:

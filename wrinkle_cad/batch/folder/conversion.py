@@ -28,7 +28,7 @@ from .inputs import FoundFile
 from .journal import Journal
 from .lock import locked_folder
 from .manifest import WAITING, Manifest, Record
-from .ownership import check_own_files, is_up_to_date, remove_stale, set_outdated
+from .ownership import Hashes, check_own_files, is_up_to_date, remove_stale, set_outdated
 from .pages import Pages
 from .plan import PlannedJob
 from .recovery import recover
@@ -284,8 +284,7 @@ class _Conversion:
             record = failed_record(base, outcome)
             self._manifest.append(record)
         if isinstance(outcome, JobDone):
-            for name in remove_stale(entry.job.output_dir, record, known):
-                self._journal.write(f"{record.input}: {name} is not as it was written: kept")
+            self._remove_stale(entry.job.output_dir, record, known)
         else:
             self._set_outdated(earlier)
         self._count(key, record, outcome.trace if isinstance(outcome, JobFailed) else "")
@@ -295,8 +294,29 @@ class _Conversion:
         if earlier is None:
             return
         known = self._manifest.outputs_of(earlier.key)
-        for name in set_outdated((self._folder / earlier.key).parent, earlier, known):
+        try:
+            renamed = set_outdated((self._folder / earlier.key).parent, earlier, known)
+        except OSError as error:
+            # A folder of this one file that cannot be written to is no end of the batch.
+            self._journal.write(
+                f"{earlier.input}: fails now; its earlier outputs are NOT marked as outdated"
+                f" ({error.strerror or error}): do not cut by them"
+            )
+            return
+        for name in renamed:
             self._journal.write(f"{earlier.input}: fails now; its earlier output is {name}")
+
+    def _remove_stale(self, folder: Path, record: Record, known: Hashes) -> None:
+        try:
+            kept = remove_stale(folder, record, known)
+        except OSError as error:
+            self._journal.write(
+                f"{record.input}: outputs of an earlier run cannot be removed"
+                f" ({error.strerror or error}): do not cut by them"
+            )
+            return
+        for name in kept:
+            self._journal.write(f"{record.input}: {name} is not as it was written: kept")
 
     def _refuse(self, key: int, phase: str, error: str, message: str) -> None:
         entry = self._planned[key]
@@ -329,12 +349,19 @@ class _Conversion:
         self._counts["missed"] += is_missed
         self._counts["strict"] += is_missed and self._planned[key].job.strict
 
+    def _waiting(self, entry: PlannedJob) -> Record:
+        """What is known of a file that was not come to: what an earlier batch made of it."""
+        earlier = self._manifest.latest(entry.key, entry.source.label)
+        if earlier is None:
+            return _blank_record(entry, WAITING, self._versions)
+        return replace(earlier, outcome=WAITING)
+
     def _state(self, *, is_over: bool = False) -> tuple[list[Record], BatchSummary]:
         """What is known of every file, and the numbers."""
         counts = self._counts
         settled = counts["done"] + counts["failed"] + counts["skipped"]
         records = [
-            self._records.get(key) or _blank_record(entry, WAITING, self._versions)
+            self._records.get(key) or self._waiting(entry)
             for key, entry in enumerate(self._planned)
         ]
         return records, BatchSummary(

@@ -172,7 +172,7 @@ def _number(record: Record, name: str, form: str) -> str:
 
 def _outcome(record: Record) -> str:
     if record.outcome == WAITING:
-        return _cell("not come to", WAITING)
+        return _cell(html.escape(printable(_waiting_text(record))), WAITING)
     if not record.is_done:
         text = html.escape(printable(f"failed: {record.message}"))
         return _cell(f'<span class="failed">{text}</span>', "failed")
@@ -180,6 +180,13 @@ def _outcome(record: Record) -> str:
         text = html.escape(printable("FAIL: " + "; ".join(record.missed_limits)))
         return _cell(f'<span class="failed">{text}</span>', "done, misses a limit")
     return _cell("done", "done")
+
+
+def _waiting_text(record: Record) -> str:
+    """What an earlier batch made of a file that this one was not come to."""
+    if record.message:
+        return f"not come to; failed in an earlier batch: {record.message}"
+    return "not come to; done by an earlier batch" if record.outputs else "not come to"
 
 
 def _cell(content: str, key: str, kind: str = "text") -> str:

@@ -4,12 +4,16 @@ from __future__ import annotations
 
 import glob
 import os
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path, PurePosixPath
 
 from wrinkle_cad.errors import InputError
 from wrinkle_cad.files.names import CAD_SUFFIXES, printable, split_name
+from wrinkle_cad.files.regular import STALL_S, within
+
+LookAt = Callable[[str | Path], None]
+"""Told what is looked at next."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -49,15 +53,37 @@ def find_sources(arguments: Sequence[str], output_dir: Path) -> Sources:
         output_dir: where the outputs of the batch go; need not exist.
 
     Raises:
-        InputError: an argument names nothing, or the output folder is one of the folders named.
+        InputError: an argument names nothing, the output folder is one of the folders named, or a
+            folder does not answer.
     """
+    place = [""]
+
+    def search(got_on: Callable[[], None]) -> Sources:
+        def look_at(path: str | Path) -> None:
+            place[0] = str(path)
+            got_on()
+
+        return _found(arguments, output_dir, look_at)
+
+    try:
+        return within(STALL_S, search, "the search")
+    except TimeoutError as error:
+        raise InputError(
+            f"The search for files stalls at {printable(place[0])}: nothing came for {STALL_S:g} s."
+            " A disk or a share there does not answer: mount it again, or leave it out."
+        ) from error
+
+
+def _found(arguments: Sequence[str], output_dir: Path, look_at: LookAt) -> Sources:
     notes: list[str] = []
     found: dict[str, Path] = {}
     roots: list[Path] = []
     for argument in arguments:
-        root, paths = _expand(argument, output_dir.resolve(), notes)
+        look_at(argument)
+        root, paths = _expand(argument, output_dir.resolve(), notes, look_at)
         roots.append(root)
         for path in paths:
+            look_at(path)
             found.setdefault(os.fspath(path.resolve()), path.absolute())
     base = Path(os.path.commonpath([os.path.normpath(root.absolute()) for root in roots]))
     sources = [_source(path, base) for path in found.values()]
@@ -65,7 +91,9 @@ def find_sources(arguments: Sequence[str], output_dir: Path) -> Sources:
     return Sources(tuple(sources), tuple(notes))
 
 
-def _expand(argument: str, output_dir: Path, notes: list[str]) -> tuple[Path, Iterable[Path]]:
+def _expand(
+    argument: str, output_dir: Path, notes: list[str], look_at: LookAt
+) -> tuple[Path, Iterable[Path]]:
     path = Path(argument)
     if path.is_dir():
         if path.resolve() == output_dir:
@@ -73,31 +101,40 @@ def _expand(argument: str, output_dir: Path, notes: list[str]) -> tuple[Path, It
                 f"The output folder {printable(argument)} is also an input folder, and inputs are"
                 " never written to. Give another -o DIR."
             )
-        return path, list(_files_below(path, output_dir, notes))
+        return path, list(_files_below(path, output_dir, notes, look_at))
     if path.exists():
         return path.parent, [path]
     if not glob.has_magic(argument):
         raise InputError(f"There is no file or folder {printable(argument)}. Check the path.")
-    matches = [Path(match) for match in glob.iglob(argument, recursive=True)]  # noqa: PTH207 - Path.glob takes no absolute patterns
-    files = [match for match in matches if _is_input(match, output_dir)]
+    files = []
+    for match in glob.iglob(argument, recursive=True):  # noqa: PTH207 - Path.glob takes no absolute patterns
+        look_at(match)
+        if _is_input(Path(match), output_dir):
+            files.append(Path(match))
     if not files:
         raise InputError(f"No CAD file matches {printable(argument)}. Check the pattern.")
     return _fixed_part(argument), files
 
 
-def _files_below(folder: Path, output_dir: Path, notes: list[str]) -> Iterator[Path]:
+def _files_below(
+    folder: Path, output_dir: Path, notes: list[str], look_at: LookAt
+) -> Iterator[Path]:
     def note(error: OSError) -> None:
         where = printable(str(error.filename))
         notes.append(f"The folder {where} was left out ({error.strerror}). Check its permissions.")
 
     for root, folders, names in os.walk(folder, onerror=note):
         here = Path(root)
+        look_at(here)
         folders[:] = sorted(
             name
             for name in folders
             if not name.startswith(".") and (here / name).resolve() != output_dir
         )
-        yield from (here / name for name in names if _is_input(here / name, output_dir))
+        for path in (here / name for name in names):
+            look_at(path)
+            if _is_input(path, output_dir):
+                yield path
 
 
 def _is_input(path: Path, output_dir: Path) -> bool:

@@ -106,6 +106,9 @@ def record_from_line(line: str) -> Record | None:
 
 def _is_sound(record: Record) -> bool:
     """Whether every value is of its kind and no name leads out of the batch's folder."""
+    tables = (record.seconds, record.figures, record.versions)
+    if not all(isinstance(table, dict) for table in tables):
+        return False
     texts = [getattr(record, name) for name in (*_TEXTS, *_MORE_TEXTS)]
     texts += [*record.missed_limits, *record.versions, *record.versions.values()]
     for file in record.outputs:

@@ -20,6 +20,7 @@ from wrinkle_cad.files.names import (
     safe_name,
     split_name,
 )
+from wrinkle_cad.files.regular import STALL_S, within
 from wrinkle_cad.job.job import Job, make_job, read_job_toml
 
 from .index_page import PAGE_NAME
@@ -113,9 +114,11 @@ def _plan_one(
     default_name = fill(mask or settings.BATCH_NAME_MASK)
     refusal = _unreadable_name(source)
     try:
-        own = {**layers.common, **_own_settings(source, stem)}
+        # On a share that is gone even the question whether a file is there stalls.
+        found = within(STALL_S, lambda _: _own_settings(source, stem), "the search for settings")
+        own = {**layers.common, **found}
         if mask is None and "name" in own:
-            default_name = safe_name(str(own["name"]))
+            default_name = safe_name(_text(own, "name"))
         merged = {**own, **layers.flags, "name": default_name, "output_dir": target}
         job = make_job(source.path, merged)
     except Exception as error:
@@ -173,9 +176,22 @@ def _own_settings(source: FoundFile, stem: str) -> dict[str, Any]:
             continue
         table = read_job_toml(path)
         meant = table.get("input")
-        if meant is None or Path(meant).resolve() == source.path.resolve():
+        if meant is not None and not isinstance(meant, Path):
+            raise JobError(f"input cannot be {_shown(meant)}: give the path of a file.")
+        if meant is None or meant.resolve() == source.path.resolve():
             own.update(table)
     return _without_paths(own)
+
+
+def _text(table: Mapping[str, Any], name: str) -> str:
+    value = table[name]
+    if not isinstance(value, str):
+        raise JobError(f"{name} cannot be {_shown(value)}: give a text.")
+    return value
+
+
+def _shown(value: object) -> str:
+    return printable(repr(value)[:60])
 
 
 def _without_paths(table: Mapping[str, Any]) -> dict[str, Any]:

@@ -11,6 +11,8 @@ from __future__ import annotations
 import contextlib
 import multiprocessing
 import os
+import signal
+import threading
 import time
 from collections import deque
 from collections.abc import Iterator, Sequence
@@ -28,6 +30,9 @@ from .worker import Began, PhaseReached, WorkerFault, peak_bytes, serve
 
 _GOODBYE_S: Final = 2.0
 _KEPT_BYTES: Final = 4000
+_INTERRUPTING: Final = tuple(
+    getattr(signal, name) for name in ("SIGINT", "SIGTERM", "SIGHUP") if hasattr(signal, name)
+)
 _LONGEST_COMPILATION_S: Final = 600.0
 """s; so long may a job compile without that counting as its time."""
 
@@ -174,6 +179,30 @@ class _Worker:
         )
 
 
+@contextlib.contextmanager
+def _undisturbed() -> Iterator[None]:
+    """Puts off Ctrl-C and its like until the block is over.
+
+    A process whose start is interrupted half-way is in nobody's list: nobody would end it, and it
+    would complain on our stderr that it was told nothing.
+    """
+    held: list[int] = []
+    before = {}
+    try:
+        if threading.current_thread() is threading.main_thread():
+            for number in _INTERRUPTING:
+                handler = signal.getsignal(number)
+                if callable(handler):
+                    before[number] = handler
+                    signal.signal(number, lambda got, _: held.append(got))
+        yield
+    finally:
+        for number, handler in before.items():
+            signal.signal(number, handler)
+    for number in held:
+        signal.raise_signal(number)
+
+
 class WorkerPool:
     """Worker processes on this machine, each with a limit of time and memory.
 
@@ -199,8 +228,9 @@ class WorkerPool:
 
     def give(self, key: int, task: Task) -> None:
         """Hands a task to an idle worker or a new one."""
-        worker = self._idle.pop() if self._idle else _Worker(self._limits)
-        self._busy.append(worker)
+        with _undisturbed():
+            worker = self._idle.pop() if self._idle else _Worker(self._limits)
+            self._busy.append(worker)
         self._starts[key] = self._starts.get(key, 0) + 1
         worker.give(key, task)
 
