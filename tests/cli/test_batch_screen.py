@@ -265,3 +265,46 @@ def test_json_names_every_output(bench: Bench, capfd: pytest.CaptureFixture[str]
     lines = [json.loads(line) for line in capfd.readouterr().out.splitlines()]
     (finished,) = [line for line in lines if line["event"] == "finished"]
     assert [entry["name"] for entry in finished["outputs"]] == [f"a.{kind}" for kind in KINDS]
+
+
+def test_what_failed_is_listed_by_cause_and_nothing_is_done(
+    bench: Bench, capfd: pytest.CaptureFixture[str]
+) -> None:
+    bench.put(a="1", b="fail@read", c="fail@read")
+    assert batch(bench) == 1
+    before = {path: path.stat().st_mtime_ns for path in bench.outputs.iterdir()}
+    capfd.readouterr()
+    assert main(["batch", "--failed", "-o", str(bench.outputs)]) == 1
+    out, err = capfd.readouterr()
+    title, *lines = out.splitlines()
+    assert title.startswith("The file, or the curves in it, cannot be used: 2. ")
+    assert lines == [f"  {name}.step: There are no curves. Draw two." for name in "bc"]
+    assert err == ""
+    assert {path: path.stat().st_mtime_ns for path in bench.outputs.iterdir()} == before
+    # What failed by the user's own fault has no traceback in the log, and one line.
+    log = (bench.outputs / "batch.log").read_text()
+    assert "Traceback" not in log
+    assert log.count("b.step") == 1
+
+    bench.put(b="1", c="1")
+    assert batch(bench, "--quiet") == 0
+    assert main(["batch", "--failed", "-o", str(bench.outputs)]) == 0
+    assert capfd.readouterr().out == "No file failed.\n"
+
+
+@pytest.mark.parametrize(
+    ("given", "said"),
+    [
+        (["--failed", "-o", "nowhere"], "no manifest.jsonl"),
+        (["--failed", "x.step", "-o", "nowhere"], "leave the files out"),
+        (["-o", "nowhere"], "give files, folders or patterns"),
+    ],
+)
+def test_a_batch_of_nothing_is_wrong_usage(
+    given: list[str], said: str, capfd: pytest.CaptureFixture[str], tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:  # fmt: skip
+    monkeypatch.chdir(tmp_path)
+    assert main(["batch", *given]) == 2
+    assert said in capfd.readouterr().err
+    assert list(tmp_path.iterdir()) == []

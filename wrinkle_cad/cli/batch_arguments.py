@@ -11,13 +11,14 @@ from wrinkle_cad import settings
 def add_batch_arguments(parser: argparse.ArgumentParser) -> None:
     """Adds the flags that only a batch has; those of a job are added by the caller."""
     add = parser.add_argument
-    add("inputs", nargs="+", metavar="INPUT", help="files, folders, glob patterns")
+    add("inputs", nargs="*", metavar="INPUT", help="files, folders, glob patterns")
     add("--name", metavar="MASK", help="names of the outputs: {stem} {suffix} {folder} {number}")
     add("--job", type=Path, metavar="FILE.toml", help="settings for files without their own")
     add("--workers", type=_whole_number, metavar="N", help="processes at a time (one per core)")
     add_limit_arguments(parser)
     add("--force", action="store_true", help="do again what is done already")
     add("--dry-run", action="store_true", help="say what would be done, write nothing")
+    add("--failed", action="store_true", help="list what failed in -o DIR, and why; do nothing")
     add(
         "--scheduler",
         metavar="ADDRESS",

@@ -22,12 +22,15 @@ from wrinkle_cad.batch.folder.events import (
     FileSkipped,
     Listener,
 )
+from wrinkle_cad.batch.folder.failure_causes import causes_of
 from wrinkle_cad.batch.folder.inputs import find_sources
+from wrinkle_cad.batch.folder.manifest import MANIFEST_NAME, Manifest
 from wrinkle_cad.batch.folder.plan import PlannedJob, plan_batch
 from wrinkle_cad.batch.folder.rehearsal import DONE_BEFORE, TO_DO, rehearse
 from wrinkle_cad.batch.folder.summary_table import total_seconds
 from wrinkle_cad.batch.workers.pool import Pool
 from wrinkle_cad.errors import InputError
+from wrinkle_cad.files.names import printable
 from wrinkle_cad.job.job import read_job_toml
 
 DONE: Final = 0
@@ -59,6 +62,8 @@ def run_batch_command(given: argparse.Namespace, keywords: Mapping[str, Any]) ->
     }
     try:
         folder = _folder(given)
+        if given.failed:
+            return _list_failed(given, folder)
         planned = _plan(given, settings_given, folder)
         if given.dry_run:
             return _rehearse(given, planned, folder)
@@ -78,6 +83,8 @@ def _folder(given: argparse.Namespace) -> Path:
 def _plan(
     given: argparse.Namespace, keywords: Mapping[str, Any], folder: Path
 ) -> tuple[PlannedJob, ...]:
+    if not given.inputs:
+        raise InputError("A batch needs files: give files, folders or patterns of names.")
     sources = find_sources(given.inputs, folder)
     for note in sources.notes:
         _say(sys.stderr, f"wrinkle-cad: {note}")
@@ -85,6 +92,29 @@ def _plan(
         raise InputError("There is no CAD file in what was given: check the paths.")
     common = {} if given.job is None else read_job_toml(given.job)
     return plan_batch(sources.files, folder, keywords=keywords, mask=given.name, common=common)
+
+
+def _list_failed(given: argparse.Namespace, folder: Path) -> int:
+    """Lists the files that failed when they were last done, by cause."""
+    if given.inputs:
+        raise InputError("--failed lists what is in -o DIR: leave the files out.")
+    if not (folder / MANIFEST_NAME).exists():
+        raise InputError(
+            f"There is no batch in {printable(str(folder))}: it has no {MANIFEST_NAME}."
+        )
+    causes = causes_of(Manifest(folder).records())
+    for cause in causes:
+        if given.json_lines:
+            for record in cause.records:
+                line = {"input": record.input, "cause": cause.title, "message": record.message}
+                _say(sys.stdout, json.dumps(line))
+            continue
+        _say(sys.stdout, f"{cause.title}: {len(cause.records)}. {cause.hint}")
+        for record in cause.records:
+            _say(sys.stdout, f"  {printable(record.input)}: {printable(record.message)}")
+    if not causes and not given.quiet and not given.json_lines:
+        _say(sys.stdout, "No file failed.")
+    return FAILED if causes else DONE
 
 
 def _rehearse(given: argparse.Namespace, planned: tuple[PlannedJob, ...], folder: Path) -> int:

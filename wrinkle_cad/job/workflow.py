@@ -76,6 +76,7 @@ def _one_line_of(error: Exception, job: Job) -> str:
 
 
 def _run(job: Job, clock: PhaseClock) -> JobDone:
+    from wrinkle_cad.pattern.piece.thumbnail import thumbnail
     from wrinkle_cad.report.verdict import entries_of
 
     from .trials import add_trials
@@ -92,6 +93,7 @@ def _run(job: Job, clock: PhaseClock) -> JobDone:
     summary = summary_of(job, file, chosen, entries, findings, made.limits)
     if made.upper is not None:
         summary["stitch"] = made.upper.stitch_as_json()
+    summary["outline_mm"] = thumbnail(made.pattern.pieces[0]) if made.pattern.pieces else []
     outputs = _write(job, made, summary, clock)
     return JobDone(
         job=job,

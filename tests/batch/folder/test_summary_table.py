@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import re
 from dataclasses import replace
 from html.parser import HTMLParser
 from pathlib import Path
@@ -101,3 +102,39 @@ def test_no_cell_is_a_formula(text: str, tmp_path: Path) -> None:
 def test_a_number_stays_a_number() -> None:
     assert safe_cell(-1.5) == -1.5
     assert safe_cell("a-1") == "a-1"
+
+
+def test_a_piece_is_drawn_from_the_outline_alone() -> None:
+    drawn = replace(RECORD, figures={"outline": "0,0 40.5,0 40.5,10 0,12"})
+    page = index_page([drawn], SUMMARY)
+    assert 'points="0,12 40.5,12 40.5,2 0,0"' in page
+    for hostile in ('0,0 1,1"><script>', "0,0 1,1", "nan,0 1,1 2,2", "1e5,0 1,1 2,2", ""):
+        assert "polygon points" not in index_page(
+            [replace(RECORD, figures={"outline": hostile})], SUMMARY
+        )
+
+
+def test_failures_stand_together_by_cause_with_what_helps() -> None:
+    late = replace(FAILED, input="g.step", error="TimeLimit", message="The time was up")
+    damaged = [
+        replace(FAILED, input=f"{at}.step", error="InputError", message="no curves") for at in "ab"
+    ]
+    page = index_page([late, *damaged, done("x", 1.0)], SUMMARY)  # type: ignore[list-item]
+    first, second = page.split("<details")[1:]
+    assert "cannot be used: 2<" in first
+    assert "a.step: no curves" in first
+    assert "b.step: no curves" in first
+    assert "was up: 1<" in second
+    assert "Give more with --timeout" in second
+    assert "x.step" not in first + second.partition("<table")[0]
+
+
+def test_a_file_is_found_by_its_state_and_by_pass_or_fail() -> None:
+    kinds = {"developability": 90.0, "state": "creased", "limits": 2}
+    missed = replace(RECORD, figures=kinds, missed_limits=("a crease",))
+    passed = replace(RECORD, input="p.step", figures=kinds, missed_limits=())
+    page = index_page([missed, passed, FAILED], SUMMARY)
+    assert re.findall('<tr data-kinds="([^"]*)"', page) == [
+        "creased passed", "creased missed", "failed",
+    ]  # fmt: skip
+    assert re.findall('data-choice="([^"]*)"', page) == ["creased", "passed", "missed", "failed"]

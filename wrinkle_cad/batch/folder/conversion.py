@@ -23,6 +23,7 @@ from wrinkle_cad.report.versions import installed_versions
 from .delivery import deliver, failed_record
 from .disk_space import check_disk_space
 from .events import BatchStarted, BatchSummary, FileFinished, FilePhase, FileSkipped, Listener
+from .failure_causes import USER_ERRORS
 from .fingerprint import hash_settings
 from .inputs import FoundFile
 from .journal import Journal
@@ -341,7 +342,8 @@ class _Conversion:
         self._count_missed(key, record)
         message = f" in phase {record.phase}: {record.message}" if record.message else ""
         self._journal.write(f"{record.input}: {record.outcome}{message}")
-        self._journal.write_detail(trace)
+        if record.error not in USER_ERRORS:
+            self._journal.write_detail(trace)
         self._tell(FileFinished(record.input, record))
 
     def _count_missed(self, key: int, record: Record) -> None:

@@ -145,6 +145,9 @@ def figures_of(summary: Mapping[str, Any]) -> dict[str, Any]:
     figures["inner_bend_radius_mm"] = min(bent) if bent else None
     shares = [float(strip.get("developable_share", 1.0)) for strip in leading]
     figures["developability"] = 100.0 * min(shares)
+    figures["limits"] = len(summary.get("verdict", {}).get("limits", ()))
+    outline = [(float(x), float(y)) for x, y in summary.get("outline_mm", ())]
+    figures["outline"] = " ".join(f"{x:.6g},{y:.6g}" for x, y in outline)
     return figures
 
 

@@ -6,7 +6,10 @@ import base64
 import hashlib
 import html
 import math
+import re
 from collections.abc import Sequence
+from functools import cache
+from importlib.resources import files
 from pathlib import Path, PurePosixPath
 from typing import Final
 from urllib.parse import quote
@@ -15,6 +18,7 @@ from wrinkle_cad.files.names import printable
 from wrinkle_cad.files.own import write_own
 
 from .events import BatchSummary
+from .failure_causes import Cause, causes_of
 from .manifest import WAITING, Record
 from .summary_table import total_seconds
 
@@ -28,51 +32,38 @@ _PAGE: Final = """<!doctype html>
  form-action 'none'; style-src 'unsafe-inline'; script-src 'sha256-{script_hash}'">
 <title>wrinkle_cad batch</title>
 <style>
-:root {{ color-scheme: light dark; font: 15px/1.45 system-ui, sans-serif; }}
-body {{ margin: 1.5rem auto; max-width: 75rem; padding: 0 1rem; }}
-.scroll {{ overflow-x: auto; }}
-table {{ border-collapse: collapse; width: 100%; }}
-th, td {{ text-align: left; padding: .35rem .6rem; border-bottom: 1px solid #8884; }}
-td {{ vertical-align: top; overflow-wrap: anywhere; }}
-td:first-child {{ min-width: 16rem; }}
-th button {{ all: unset; cursor: pointer; font-weight: 600; }}
-th button:focus-visible {{ outline: 2px solid; }}
-.number {{ text-align: right; font-variant-numeric: tabular-nums; white-space: nowrap; }}
-.bar {{ display: inline-block; width: 5rem; height: .55rem; background: #8884; }}
-.bar i {{ display: block; height: 100%; background: #2a8a4a; }}
-.failed {{ color: #c0392b; }}
-</style></head><body>
+{style}</style></head><body>
 <h1>wrinkle_cad batch</h1>
 <p>{counts}</p>
+{causes}<div class="card">
+<div class="tools"><input type="search" placeholder="Search names and outcomes"
+ aria-label="Search names and outcomes">
+<div class="choices" role="group" aria-label="Show only">{choices}</div>
+<span class="shown muted" role="status"></span></div>
 <div class="scroll"><table><thead><tr>{header}</tr></thead>
 <tbody>
 {rows}
-</tbody></table></div>
-<script>
-document.querySelectorAll("th button").forEach(function (button) {{
-  button.addEventListener("click", function () {{
-    var head = button.parentElement, column = head.cellIndex;
-    var direction = head.getAttribute("aria-sort") === "ascending" ? -1 : 1;
-    document.querySelectorAll("th").forEach(function (other) {{
-      other.removeAttribute("aria-sort");
-    }});
-    head.setAttribute("aria-sort", direction > 0 ? "ascending" : "descending");
-    var body = document.querySelector("tbody");
-    Array.from(body.rows).sort(function (first, second) {{
-      var a = first.cells[column].dataset.key, b = second.cells[column].dataset.key;
-      var by = isNaN(a) || isNaN(b) || a === "" || b === "" ? a.localeCompare(b) : a - b;
-      return by * direction;
-    }}).forEach(function (row) {{ body.appendChild(row); }});
-  }});
-}});
-</script></body></html>
+</tbody></table></div></div>
+<script>{script}</script></body></html>
 """
-_SCRIPT: Final = _PAGE.partition("<script>")[2].partition("</script>")[0].format()
-_SCRIPT_HASH: Final = base64.b64encode(hashlib.sha256(_SCRIPT.encode()).digest()).decode("ascii")
-"""The only script that a browser may run there, whatever a name smuggles in."""
 BEGINNINGS: Final = (_PAGE[: _PAGE.index('batch">')].encode("ascii"),)
 """What a page begins with: its generator's name is in it."""
+_OPEN_RECORDS: Final = 5
+"""A cause of so few failures shows them at once."""
+_OUTLINE: Final = re.compile(r"(?:\d{1,9}(?:\.\d{1,6})?,\d{1,9}(?:\.\d{1,6})? ?){3,100}")
+"""The points of a picture; whatever else a manifest has there is not drawn."""
+_CHOICES: Final = (
+    ("developable", "developable"),
+    ("stretched", "stretched"),
+    ("creased", "creased"),
+    ("folded", "folded"),
+    ("passed", "PASS"),
+    ("missed", "FAIL"),
+    ("failed", "failed"),
+    (WAITING, "not come to"),
+)
 _HEADER: Final = (
+    "pattern",
     "file",
     "state",
     "developable rails",
@@ -112,9 +103,21 @@ def index_page(records: Sequence[Record], summary: BatchSummary) -> str:
         counts = f"Under way. {counts}"
     if summary.stopped_by:
         counts += f" Stopped: {printable(summary.stopped_by)}."
+    script = _packaged("index.js")
+    digest = hashlib.sha256(script.encode()).digest()
+    kinds = {kind for record in records for kind in _kinds(record)}
     return _PAGE.format(
-        script_hash=_SCRIPT_HASH,
+        # The only script that a browser may run there, whatever a name smuggles in.
+        script_hash=base64.b64encode(digest).decode("ascii"),
+        script=script,
+        style=_packaged("index.css"),
         counts=html.escape(counts),
+        causes=_causes(causes_of(ordered)),
+        choices="".join(
+            f'<button type="button" aria-pressed="false" data-choice="{kind}">{title}</button>'
+            for kind, title in _CHOICES
+            if kind in kinds
+        ),
         header="".join(
             f'<th scope="col"><button type="button">{html.escape(title)}</button></th>'
             for title in _HEADER
@@ -123,26 +126,79 @@ def index_page(records: Sequence[Record], summary: BatchSummary) -> str:
     )
 
 
+@cache
+def _packaged(name: str) -> str:
+    return files(__package__).joinpath("index", name).read_text(encoding="utf-8")
+
+
 def _rank(record: Record) -> tuple[bool, float, str]:
     return (not record.is_done, -float(record.figures.get("developability", -1.0)), record.input)
 
 
+def _causes(causes: Sequence[Cause]) -> str:
+    """The failed files by cause, each group with what helps."""
+    if not causes:
+        return ""
+    groups = "".join(
+        f"<details{' open' if len(cause.records) <= _OPEN_RECORDS else ''}>"
+        f"<summary>{html.escape(cause.title)}: {len(cause.records)}</summary>"
+        f'<p class="muted">{html.escape(cause.hint)}</p><ul>'
+        + "".join(
+            f"<li>{html.escape(printable(f'{record.input}: {record.message}'))}</li>"
+            for record in cause.records
+        )
+        + "</ul></details>"
+        for cause in causes
+    )
+    return f'<div class="card"><h2>Failed, by cause</h2>{groups}</div>\n'
+
+
+def _kinds(record: Record) -> list[str]:
+    """What the choices above the table find a file by."""
+    if not record.is_done:
+        return [record.outcome]
+    state = str(record.figures.get("state", ""))
+    judged = record.figures.get("limits") or record.missed_limits
+    kinds = ["missed" if record.missed_limits else "passed"] if judged else []
+    return [*(kind for kind, _ in _CHOICES[:4] if kind == state), *kinds]
+
+
 def _row(record: Record) -> str:
     state = printable(str(record.figures.get("state", "")))
+    tone = state if state in {kind for kind, _ in _CHOICES[:4]} else ""
     cells = [
-        _cell(_link(record), record.input),
-        _cell(html.escape(state), state),
+        _cell(_thumbnail(record), "", "picture"),
+        _cell(_link(record), record.input, "file"),
+        _cell(f'<span class="state {tone}">{html.escape(state)}</span>' if state else "", state),
         _developability(record),
         _number(record, "max_strain_percent", "{:.3f}%"),
         _number(record, "max_crease_deg", "{:.1f}&deg;"),
         _number(record, "inner_bend_radius_mm", "{:.2f} mm"),
         _number(record, "max_twist_deg", "{:.2f}&deg;"),
         _number(record, "cut_longer_percent", "{:.1f}%"),
-        _number(record, "area_pattern_mm2", "{:.1f} mm&sup2;"),
-        _cell(f"{total_seconds(record):.2f}", f"{total_seconds(record):.6f}", "number"),
+        _number(record, "area_pattern_mm2", "{:,.1f} mm&sup2;"),
+        _cell(f"{total_seconds(record):.2f} s", f"{total_seconds(record):.6f}", "number"),
         _outcome(record),
     ]
-    return f"<tr>{''.join(cells)}</tr>"
+    cells[-1] = cells[-1].replace('class="text"', 'class="outcome"', 1)
+    titled = "".join(
+        cell.replace("<td ", f'<td data-title="{title}" ', 1)
+        for title, cell in zip(_HEADER, cells, strict=True)
+    )
+    return f'<tr data-kinds="{" ".join(_kinds(record))}">{titled}</tr>'
+
+
+def _thumbnail(record: Record) -> str:
+    """The first piece, small; nothing where the manifest holds no outline of the known form."""
+    outline = str(record.figures.get("outline", ""))
+    if not _OUTLINE.fullmatch(outline):
+        return ""
+    points = [[float(part) for part in point.split(",")] for point in outline.split()]
+    width, height = (max(point[axis] for point in points) or 1.0 for axis in (0, 1))
+    turned = " ".join(f"{x:g},{height - y:g}" for x, y in points)
+    pad = 0.02 * max(width, height)
+    view = f"{-pad:g} {-pad:g} {width + 2 * pad:g} {height + 2 * pad:g}"
+    return f'<svg class="thumbnail" viewBox="{view}"><polygon points="{turned}"/></svg>'
 
 
 def _link(record: Record) -> str:
@@ -179,6 +235,8 @@ def _outcome(record: Record) -> str:
     if record.missed_limits:
         text = html.escape(printable("FAIL: " + "; ".join(record.missed_limits)))
         return _cell(f'<span class="failed">{text}</span>', "done, misses a limit")
+    if record.figures.get("limits"):
+        return _cell('<span class="passed">PASS</span>', "done")
     return _cell("done", "done")
 
 

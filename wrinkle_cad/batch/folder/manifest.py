@@ -28,7 +28,7 @@ WAITING: Final = "waiting"
 
 _SIZE_LIMIT: Final = 1 << 30
 _TEXTS: Final = ("key", "input", "input_sha256", "settings_sha256", "outcome")
-_TEXT_FIGURES: Final = ("state",)
+_TEXT_FIGURES: Final = ("state", "outline")
 _MORE_TEXTS: Final = ("phase", "error", "message", "finished")
 
 
@@ -170,6 +170,10 @@ class Manifest:
     def latest(self, key: str, input_label: str) -> Record | None:
         """The last record about an input and its outputs' name."""
         return self._records.get((key, input_label))
+
+    def records(self) -> tuple[Record, ...]:
+        """The last record about each input, in the order of the inputs."""
+        return tuple(sorted(self._records.values(), key=lambda record: (record.input, record.key)))
 
     def outputs_of(self, key: str) -> Mapping[str, frozenset[str]]:
         """Names and hashes of all files ever written under an outputs' name, whatever the input."""
