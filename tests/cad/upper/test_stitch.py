@@ -364,16 +364,20 @@ def test_a_wave_without_margin_is_refused_since_its_band_would_close_up() -> Non
 def test_a_wave_so_high_that_the_band_folds_over_is_refused() -> None:
     low = carve(shoe(), *rails(), margin=1.0)
     with pytest.raises(
-        InputError, match=r"band along P is up to [\d.]+ mm wide and \d+% of it folds"
+        InputError,
+        match=r"band along P is up to [\d.]+ mm wide and \d+% of it folds over: it faces into the"
+        r" upper, most at \([-\d., ]+\) mm",
     ):
         stitched(low, waves=8, height=40.0, side="in")
-    with pytest.raises(InputError, match="folds over"):
+    with pytest.raises(InputError, match=r"folds over.* at \([-\d., ]+\) mm"):
         stitched(low, waves=8, height=4.0, across=-4.0)
 
 
 def test_a_border_that_is_not_the_uppers_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("wrinkle_cad.cad.upper.stitch.end_fan", lambda *_: ())
-    with pytest.raises(CadError, match=r"compare the border .* \d+ of the \d+ free edges"):
+    with pytest.raises(
+        CadError, match=r"compare the border .* \d+ of the \d+ free edges.* the first at \("
+    ):
         stitched(opening())
 
 

@@ -19,6 +19,8 @@ _TIMEOUTS_S: Final = (0.1, 1e7)
 """s; the shortest and the longest time that a file may be given: 16 weeks."""
 _LARGEST_MEMORY_GIB: Final = 1e6
 """GiB; more than any machine has, and still a number of bytes that systems take."""
+_READING: Final = "read"
+"""The phase in which only the reader works on the file."""
 _MEMORY_SIGNALS: Final = (signal.SIGSEGV, signal.SIGABRT)
 MEMORY_ERRORS: Final = ("MemoryError", "_ArrayMemoryError")
 """Names of the errors that Python and numpy raise when they are refused memory."""
@@ -112,9 +114,14 @@ def _cause(ending: Ending, limits: WorkerLimits) -> tuple[str, str]:
             f"An internal error happened{where} ({ending.fault.error}: {text}). Please report it"
             " with the file."
         )
+    if ending.phase == _READING:
+        return "WorkerKilled", (
+            f"Reading the file ended the process by {_manner(ending)}: it is damaged in a way that"
+            " its reader does not survive. Export it again."
+        )
     return "WorkerKilled", (
-        f"The worker was ended{where} by {_manner(ending)}. Look at the file with inspect, then try"
-        " it alone with run."
+        f"The worker was ended{where} by {_manner(ending)}. Try the file alone with run, and with"
+        " another --tolerance; export it again if inspect fails on it, too."
     )
 
 

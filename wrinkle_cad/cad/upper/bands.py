@@ -32,6 +32,7 @@ from wrinkle_cad.strip.curve.nearest import nearest_on_polyline
 from wrinkle_cad.strip.curve.polyline import row_lengths, segment_lengths
 from wrinkle_cad.strip.curve.sampling import Samples
 from wrinkle_cad.strip.flat.turning import without_turning_back
+from wrinkle_cad.strip.places import place_text
 from wrinkle_cad.strip.portable import norm
 from wrinkle_cad.strip.sampled_strip import SampledStrip
 from wrinkle_cad.strip.triangulation import Triangulation, triangulate
@@ -280,25 +281,31 @@ def _check_open(parameters: Floats, gaps: Floats, width: float, name: str) -> No
 
 
 def _check_folds(triangulation: Triangulation, opening: Opening, i: int, width: float) -> None:
-    name, share = "PQ"[i], _overhang(triangulation, opening, i)
+    name, (share, place) = "PQ"[i], _overhang(triangulation, opening, i)
     if share > settings.BAND_OVERHANG_LIMIT:
         raise InputError(
             f"The band along {name} is up to {width:.3g} mm wide and {share:.0%} of it folds over:"
-            f" it faces into the upper. At most {settings.BAND_OVERHANG_LIMIT:.0%} may: lower the"
-            " waves, take fewer of them or a wider margin."
+            f" it faces into the upper, most at {place}. At most"
+            f" {settings.BAND_OVERHANG_LIMIT:.0%} may: lower the waves, take"
+            " fewer of them or a wider margin."
         )
     fold = np.abs(triangulation.fold)
     worst = float(fold.max(initial=0.0))
     if worst > settings.BAND_FOLD_LIMIT:
+        at, to = triangulation.bridges[int(fold.argmax()) + (not triangulation.is_closed)]
+        middle = 0.5 * (
+            triangulation.p[at % len(triangulation.p)] + triangulation.q[to % len(triangulation.q)]
+        )
         raise InputError(
             f"The band along {name} is up to {width:.3g} mm wide and folds over by"
-            f" {np.degrees(worst):.0f} degrees, at most {np.degrees(settings.BAND_FOLD_LIMIT):.0f}"
-            " are allowed. Lower the waves, take fewer of them or a wider margin."
+            f" {np.degrees(worst):.0f} degrees at {place_text(middle, 0.0)}, at most"
+            f" {np.degrees(settings.BAND_FOLD_LIMIT):.0f} are allowed. Lower the waves,"
+            " take fewer of them or a wider margin."
         )
 
 
-def _overhang(triangulation: Triangulation, opening: Opening, i: int) -> float:
-    """Returns the share of a band's area that faces against the upper's normal nearby.
+def _overhang(triangulation: Triangulation, opening: Opening, i: int) -> tuple[float, str]:
+    """Returns the share of a band's area that faces against the upper's normal, and where.
 
     Below a fold of the profile that overhangs, where it runs back along its rail, a band has to.
     """
@@ -315,7 +322,8 @@ def _overhang(triangulation: Triangulation, opening: Opening, i: int) -> float:
     is_much = sizes[is_against].sum() > settings.BAND_OVERHANG_LIMIT * sizes.sum()
     if is_much and not self_crossings(triangulation).count:
         is_against &= ~_below_overhangs(triangulation, rail, nearest, i)
-    return float(sizes[is_against].sum() / sizes.sum())
+    most = middles[np.where(is_against, sizes, 0.0).argmax()]
+    return float(sizes[is_against].sum() / sizes.sum()), place_text(most, 0.0)
 
 
 def _below_overhangs(

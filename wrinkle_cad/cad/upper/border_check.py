@@ -14,6 +14,7 @@ from wrinkle_cad.cad.kernel.measures import length_of
 from wrinkle_cad.cad.kernel.shape_index import ShapeIndex
 from wrinkle_cad.cad.kernel.topology import free_edges, make_compound, make_vertex
 from wrinkle_cad.errors import CadError
+from wrinkle_cad.strip.places import place_text
 
 STEP = "compare the border with the upper's"
 
@@ -52,9 +53,10 @@ def compared_border(
     if strays:
         raise CadError(
             STEP,
-            f"{len(strays)} of the {len(after)} free edges of the result, {sum(strays):.3g} mm in"
-            " all, are none of the upper's: the wrinkle is not watertight. Change the margin, or"
-            " move the rails a little.",
+            f"{len(strays)} of the {len(after)} free edges of the result,"
+            f" {sum(length_of(edge) for edge in strays):.3g} mm in all, the first at"
+            f" {place_text(edge_middle(strays[0]), lengths[0])}, are none of the upper's: the"
+            " wrinkle is not watertight. Change the margin, or move the rails a little.",
         )
     off = lengths[1] - (lengths[0] - lost)
     slack = allowance + settings.SEWING * (1 + len(after))
@@ -70,17 +72,16 @@ def compared_border(
 
 def _strays(
     before: Sequence[TopoDS_Edge], after: Sequence[TopoDS_Edge], allowance: float
-) -> list[float]:
-    """Returns the lengths in mm of the free edges that do not lie on the upper's."""
+) -> list[TopoDS_Edge]:
+    """Returns the free edges that do not lie on the upper's."""
     if not before:
-        return [length_of(edge) for edge in after]
+        return list(after)
     held, strays = make_compound(before), []
     known = ShapeIndex(before)
     for edge in after:
         if known.find(edge) >= 0:
             continue
         gap = BRepExtrema_DistShapeShape(make_vertex(edge_middle(edge)), held).Value()
-        length = length_of(edge)
-        if gap > settings.SEWING and length > allowance:
-            strays.append(length)
+        if gap > settings.SEWING and length_of(edge) > allowance:
+            strays.append(edge)
     return strays

@@ -20,10 +20,12 @@ from OCP.TopExp import TopExp_Explorer
 from OCP.TopoDS import TopoDS_Edge, TopoDS_Face
 
 from wrinkle_cad import settings
+from wrinkle_cad.cad.kernel.curves import edge_middle
 from wrinkle_cad.cad.kernel.shape_index import ShapeIndex
-from wrinkle_cad.cad.kernel.topology import as_edge
+from wrinkle_cad.cad.kernel.topology import as_edge, edges_of
 from wrinkle_cad.errors import CadError, InputError
 from wrinkle_cad.strip.curve.nearest import nearest_on_polyline
+from wrinkle_cad.strip.places import place_text
 from wrinkle_cad.strip.portable import dot, norm
 
 from .opening_outline import Side, unit
@@ -137,7 +139,9 @@ def sorted_pieces(
     for k in range(len(plans)):
         # Only its own outline parts an opening from what lies around it.
         others = [group for j, own in enumerate(parted) if j != k for group in own.values()]
-        decided = _decide([cast.get(k, []) for cast in votes], [*neighbours.values(), *others])
+        decided = _decide(
+            [cast.get(k, []) for cast in votes], [*neighbours.values(), *others], flat
+        )
         for i, is_in in enumerate(decided):
             if is_in and inside[i] >= 0:
                 raise _nested(plans, inside[i], k)
@@ -165,7 +169,11 @@ def _span(plan: OpeningPlan) -> float:
     return norm(np.ptp(plan.points, axis=0))
 
 
-def _decide(votes: Sequence[Sequence[float]], joints: Sequence[Sequence[int]]) -> list[bool]:
+def _decide(
+    votes: Sequence[Sequence[float]],
+    joints: Sequence[Sequence[int]],
+    pieces: Sequence[TopoDS_Face],
+) -> list[bool]:
     """Returns which pieces lie inside: by their own edges, or else as the pieces they join."""
     known: dict[int, bool] = {}
     for i, cast in enumerate(votes):
@@ -173,11 +181,12 @@ def _decide(votes: Sequence[Sequence[float]], joints: Sequence[Sequence[int]]) -
             continue
         inner = sum(vote > 0.0 for vote in cast)
         if 0 < inner < len(cast):
+            place = place_text(edge_middle(edges_of(pieces[i])[0]), 0.0)
             raise CadError(
                 STEP,
-                f"a piece has {inner} of its {len(cast)} new edges on the inner side of the"
-                " opening, neither all nor none. Keep the outline away from folds and borders of"
-                " the upper, or change the margin.",
+                f"a piece at {place} has {inner} of its {len(cast)} new edges on the inner side of"
+                " the opening, neither all nor none. Keep the outline away from folds and borders"
+                " of the upper, or change the margin.",
             )
         known[i] = inner > 0
     grown = True

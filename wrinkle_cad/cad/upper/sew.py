@@ -13,10 +13,12 @@ from OCP.TopAbs import TopAbs_REVERSED
 from OCP.TopoDS import TopoDS_Face, TopoDS_Shape, TopoDS_Shell
 
 from wrinkle_cad.cad.faces.face_borders import sub_curve
+from wrinkle_cad.cad.kernel.curves import edge_middle
 from wrinkle_cad.cad.kernel.shape_index import ShapeIndex
 from wrinkle_cad.cad.kernel.steps import kernel_step
 from wrinkle_cad.cad.kernel.topology import as_shell, edges_of, faces_of, shells_of
 from wrinkle_cad.errors import CadError
+from wrinkle_cad.strip.places import place_text
 
 from .pieces import oriented_edges
 
@@ -90,7 +92,11 @@ def sew(faces: Sequence[TopoDS_Face], tolerance: float) -> Sewn:
     held = ShapeIndex(faces_of(shell))
     places = [held.find(sewing.Modified(face)) for face in faces]
     if min(places) < 0 or len(set(places)) < len(faces):
-        raise CadError(STEP, "two faces became one. Widen the margin.")
+        raise CadError(
+            STEP,
+            "two faces, whose borders lie within"
+            f" {tolerance:.2g} mm of each other, became one. Widen the margin.",
+        )
     if faces_of(shell)[places[0]].Orientation() != faces[0].Orientation():
         shell = as_shell(shell.Reversed())
     kept = faces_of(shell)
@@ -134,10 +140,11 @@ def _check_oriented(shell: TopoDS_Shell) -> None:
                 reverse[at] += 1
             else:
                 forward[at] += 1
-    wrong = sum(max(pair) > 1 for pair in zip(forward, reverse, strict=True))
+    wrong = [at for at, uses in enumerate(zip(forward, reverse, strict=True)) if max(uses) > 1]
     if wrong:
+        first = next(edge for edge in edges_of(shell) if index.find(edge) == wrong[0])
         raise CadError(
             STEP,
-            f"{wrong} edges are run along twice in the same direction. Check that all faces of the"
-            " upper face the same way.",
+            f"{len(wrong)} edges, the first at {place_text(edge_middle(first), 0.0)}, are run along"
+            " twice in the same direction. Check that all faces of the upper face the same way.",
         )

@@ -11,18 +11,20 @@ from typing import TYPE_CHECKING, cast
 
 import numpy as np
 from numpy.typing import NDArray
+from OCP.BRep import BRep_Tool
 from OCP.TopoDS import TopoDS_Edge, TopoDS_Face, TopoDS_Shape, TopoDS_Shell
 
 from wrinkle_cad import settings
 from wrinkle_cad.cad.exchange.shapes import FaceStyle, Part
-from wrinkle_cad.cad.kernel.curves import edge_ends
+from wrinkle_cad.cad.kernel.curves import edge_ends, edge_middle
 from wrinkle_cad.cad.kernel.measures import check_valid, face_areas, tolerance_of
-from wrinkle_cad.cad.kernel.topology import faces_of, solid_inside
+from wrinkle_cad.cad.kernel.topology import edges_of, faces_of, solid_inside
 from wrinkle_cad.cad.rail.directrix import Directrix
 from wrinkle_cad.errors import CadError, InputError
 from wrinkle_cad.options.checking import check_numbers
 from wrinkle_cad.options.signature import knows_its_options
 from wrinkle_cad.strip.curve.polyline import row_lengths
+from wrinkle_cad.strip.places import place_text
 from wrinkle_cad.strip.portable import norm
 from wrinkle_cad.strip.ways import unused_text
 
@@ -383,9 +385,11 @@ def _checked_tolerance(shell: TopoDS_Shell, upper: TopoDS_Shape) -> float:
     found, own = tolerance_of(shell), tolerance_of(upper)
     limit = max(settings.EDGE_TOLERANCE_LIMIT, own)
     if found > limit:
+        widest = next(edge for edge in edges_of(shell) if BRep_Tool.Tolerance_s(edge) == found)
         raise CadError(
             STEP,
-            f"the largest edge tolerance is {found:.2g} mm, the upper's own {own:.2g} mm,"
+            f"the largest edge tolerance is {found:.2g} mm, at"
+            f" {place_text(edge_middle(widest), 0.0)}, the upper's own {own:.2g} mm,"
             f" at most {limit:.2g} mm is allowed. Change the margin, or move the rails a little.",
         )
     return found
