@@ -1,13 +1,14 @@
 from __future__ import annotations
 
 import io
+import time
 
 import build123d as b3d
 import numpy as np
 import pytest
 import trimesh
 
-from wrinkle_cad import WrinkleStrip
+from wrinkle_cad import WrinkleStrip, WrinkleWarning
 from wrinkle_cad.cad.exchange.write import stl_bytes
 from wrinkle_cad.cad.kernel.mesh import binary_stl, mesh_of
 
@@ -74,3 +75,26 @@ def test_collapsed_triangles_are_left_out_and_no_others() -> None:
     mesh = trimesh.load(io.BytesIO(stl), file_type="stl", process=False)
     assert mesh.triangles == pytest.approx(points[[[0, 1, 2], [1, 2, 0]]])
     assert mesh.face_normals == pytest.approx(np.array([[0, 0, 1.0], [0, 0, 1]]))
+
+
+def test_a_cone_is_a_fan_of_as_many_triangles_as_its_rim_needs(strip: WrinkleStrip) -> None:
+    shell = strip.topods_shell()
+    points, triangles = mesh_of(shell)
+    apart = max(
+        b3d.Vertex(*center).distance_to(b3d.Shell(shell))
+        for center in points[triangles[::5]].mean(axis=1)
+    )
+    assert apart <= 0.05
+    samples = len(strip.triangulation.p) + len(strip.triangulation.q)
+    written = np.frombuffer(stl_bytes(shell)[80:84], dtype="<u4")[0]
+    assert written < 6 * samples
+
+
+def test_slender_cones_of_a_rail_of_a_kilometre_are_meshed_at_once() -> None:
+    # The kernel's own way to mesh such a cone takes minutes and 20,000 triangles.
+    points = [(1e4 * x, 1e5 + 1.6e5 * np.sin(x / 20), 4e4 * (x % 20)) for x in range(0, 101, 10)]
+    with pytest.warns(WrinkleWarning, match="passes through itself"):
+        shell = WrinkleStrip(rail(0.0), b3d.Edge.make_spline(points), tolerance=1.0).topods_shell()
+    start = time.process_time()
+    assert len(mesh_of(shell, tolerance=1.0)[1]) < 10_000
+    assert time.process_time() - start < 2.0

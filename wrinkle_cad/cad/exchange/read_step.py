@@ -20,6 +20,7 @@ from wrinkle_cad.cad.exchange.step.names import (
 from wrinkle_cad.cad.exchange.step.readable import with_construction, with_wires
 from wrinkle_cad.cad.exchange.step.text import check_step, length_units, plain_text, why_no_shape
 from wrinkle_cad.cad.kernel.steps import KERNEL_ERRORS, kernel_words
+from wrinkle_cad.files.names import printable
 
 from .collect import listed
 from .naming import Marker, found_in
@@ -29,6 +30,7 @@ from .shapes import (
 )
 from .sniff import STEP, Source
 from .units import check_unit, unit_words
+from .unread import are_styles_whole, unread_shape
 from .xde import Leaf, kernel_parameters, leaves_of, new_document, silence_kernel
 
 _NAMED_SURFACE: Final = re.compile(
@@ -76,7 +78,6 @@ def _leaves(source: Source, marked: bytes, text: bytes) -> tuple[list[Leaf], Mar
     try:
         reader = STEPCAFControl_Reader()
         reader.SetNameMode(True)
-        reader.SetColorMode(True)
         has_names = int(bool(_NAMED_SURFACE.search(text)))
         with kernel_parameters(
             {"xstep.cascade.unit": "MM", "read.stepcaf.subshapes.name": has_names}
@@ -85,6 +86,13 @@ def _leaves(source: Source, marked: bytes, text: bytes) -> tuple[list[Leaf], Mar
                 raise source.fail(
                     "damaged: not readable as STEP although its frame is whole. Export it again."
                 )
+            fault = unread_shape(reader)
+            if fault is not None:
+                raise source.fail(
+                    f"damaged: entity {fault.rank} of its data cannot be read"
+                    f" ({printable(fault.complaint)}). Export it again."
+                )
+            reader.SetColorMode(are_styles_whole(reader))
             if reader.NbRootsForTransfer() == 0 or not reader.Transfer(document):
                 return [], lambda _: None
         return leaves_of(document), _marker(reader)

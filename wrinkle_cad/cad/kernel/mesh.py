@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from typing import Final
 
 import numpy as np
@@ -10,14 +11,16 @@ from OCP.BRep import BRep_Tool
 from OCP.BRepBuilderAPI import BRepBuilderAPI_Copy
 from OCP.BRepMesh import BRepMesh_IncrementalMesh
 from OCP.BRepTools import BRepTools
+from OCP.IMeshTools import IMeshTools_Parameters
 from OCP.TopAbs import TopAbs_REVERSED
 from OCP.TopLoc import TopLoc_Location
-from OCP.TopoDS import TopoDS_Shape
+from OCP.TopoDS import TopoDS_Face, TopoDS_Shape
 
 from wrinkle_cad import settings
 
+from .cone_mesh import apex_of, fans_of
 from .steps import kernel_step
-from .topology import faces_of
+from .topology import faces_of, make_compound
 
 _STL_HEADER: Final = b"wrinkle_cad, millimetres"
 _STL_TRIANGLE: Final = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("tag", "<u2")])
@@ -45,37 +48,57 @@ def mesh_of(
     Raises:
         CadError: the kernel cannot mesh the shape.
     """
-    points: list[Floats] = [np.zeros((0, 3))]
-    triangles: list[Indices] = [np.zeros((0, 3), dtype=np.int64)]
-    start = 0
     with kernel_step("mesh the shape"):
-        own = meshed_copy(shape, tolerance, angular_tolerance)
-        for face in faces_of(own):
-            place = TopLoc_Location()
-            mesh = BRep_Tool.Triangulation_s(face, place)
-            if mesh is None:
-                continue
-            moved = place.Transformation()
-            nodes = (mesh.Node(i + 1).Transformed(moved) for i in range(mesh.NbNodes()))
-            points.append(np.array([(node.X(), node.Y(), node.Z()) for node in nodes]))
-            corners = np.array([mesh.Triangle(i + 1).Get() for i in range(mesh.NbTriangles())])
-            if face.Orientation() == TopAbs_REVERSED:
-                corners = corners[:, ::-1]
-            triangles.append(corners - 1 + start)
-            start += mesh.NbNodes()
-    return np.vstack(points), np.vstack(triangles)
+        # A mesh is stored in the shape, and whoever owns the shape did not ask for one.
+        own = BRepBuilderAPI_Copy(shape, True, False).Shape()
+        BRepTools.Clean_s(own)
+        meshes = list(_meshes_of(own, tolerance, angular_tolerance))
+    counts = np.cumsum([0, *(len(points) for points, _ in meshes)])
+    return (
+        np.vstack([np.zeros((0, 3)), *(points for points, _ in meshes)]),
+        np.vstack(
+            [
+                np.zeros((0, 3), dtype=np.int64),
+                *(mesh[1] + start for mesh, start in zip(meshes, counts[:-1], strict=True)),
+            ]
+        ),
+    )
 
 
-def meshed_copy(shape: TopoDS_Shape, tolerance: float, angular_tolerance: float) -> TopoDS_Shape:
-    """Returns a copy of the shape that carries triangles.
+def _meshes_of(
+    own: TopoDS_Shape, tolerance: float, angular_tolerance: float
+) -> Iterator[tuple[Floats, Indices]]:
+    """The points and triangles of each face; triangles are stored in the shape."""
+    wanted = IMeshTools_Parameters()
+    wanted.Deflection = settings.MESH_SAG_PER_TOLERANCE * tolerance
+    wanted.Angle = angular_tolerance
+    faces = faces_of(own)
+    apices = [apex_of(face) for face in faces]
+    others = [face for face, apex in zip(faces, apices, strict=True) if apex is None]
+    if others:
+        # All at once: faces that share an edge must have the same points on it.
+        BRepMesh_IncrementalMesh(make_compound(others), wanted)
+    cones = [(face, at) for face, at in zip(faces, apices, strict=True) if at is not None]
+    fans = fans_of(cones, others, wanted)
+    for face, apex in zip(faces, apices, strict=True):
+        if apex is not None:
+            yield next(fans)
+        else:
+            yield from _stored_mesh(face)
 
-    A mesh is stored in the shape, and whoever owns the shape did not ask for one.
-    """
-    own = BRepBuilderAPI_Copy(shape, True, False).Shape()
-    BRepTools.Clean_s(own)
-    sag = settings.MESH_SAG_PER_TOLERANCE * tolerance
-    BRepMesh_IncrementalMesh(own, sag, False, angular_tolerance, False)
-    return own
+
+def _stored_mesh(face: TopoDS_Face) -> Iterator[tuple[Floats, Indices]]:
+    place = TopLoc_Location()
+    mesh = BRep_Tool.Triangulation_s(face, place)
+    if mesh is None:
+        return
+    moved = place.Transformation()
+    nodes = (mesh.Node(i + 1).Transformed(moved) for i in range(mesh.NbNodes()))
+    points = np.array([(node.X(), node.Y(), node.Z()) for node in nodes])
+    corners = np.array([mesh.Triangle(i + 1).Get() for i in range(mesh.NbTriangles())])
+    if face.Orientation() == TopAbs_REVERSED:
+        corners = corners[:, ::-1]
+    yield points, corners - 1
 
 
 def binary_stl(points: Floats, triangles: Indices) -> bytes:
