@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import io
 import math
+from dataclasses import replace
 
 import ezdxf
 import numpy as np
@@ -16,7 +17,9 @@ from tests.pattern.strips import make_pieces
 from wrinkle_cad.errors import ExportError
 from wrinkle_cad.pattern.check.judging import judge_dxf
 from wrinkle_cad.pattern.formats.bend_table import bend_table, write_bend_table
+from wrinkle_cad.pattern.formats.drawing import draw
 from wrinkle_cad.pattern.formats.dxf import write_dxf
+from wrinkle_cad.pattern.piece.grain_place import arrow_lines
 from wrinkle_cad.pattern.piece.lettering import lettering
 from wrinkle_cad.pattern.piece.options import PieceSettings
 
@@ -122,15 +125,38 @@ def test_what_was_noticed_is_told_once_for_both_feet():
     assert [len(piece.findings) for piece in pieces] == [1, 0]
 
 
-def test_the_grain_line_stands_between_bends_where_it_has_room():
+def of_quarter(count):
+    """A quarter of a tube with so many bends."""
     p = np.linspace(0.0, np.pi / 2, 41)
     arc = np.column_stack((80.0 * np.sin(p), np.zeros(41), 80.0 * np.cos(p)))
     made = strips.unrolled(arc, arc + np.array((0.0, 40.0, 0.0)))
-    for count, is_clear in ((4, True), (60, False)):
-        piece = piece_of(made, equal_bends=count)
-        grain = shapely.LineString(lettering(piece, piece.texts).grain_line)
-        bends = shapely.MultiLineString(list(piece.bends.lines))
-        assert grain.intersects(bends) != is_clear
-        if is_clear:
-            assert grain.length >= 8.0
-            assert grain.distance(bends) > 1.0
+    return piece_of(made, equal_bends=count)
+
+
+def test_the_grain_line_stands_between_bends_where_it_has_room():
+    piece = of_quarter(4)
+    made = lettering(piece, piece.texts)
+    grain = shapely.LineString(made.grain_line)
+    assert made.grain_leader is None
+    assert grain.length >= 8.0
+    assert grain.distance(shapely.MultiLineString(list(piece.bends.lines))) > 1.0
+
+
+@pytest.mark.parametrize("turn", [0.0, 0.4, 2.0])
+def test_between_close_bends_the_grain_line_stands_beside_the_piece_with_a_leader(turn):
+    piece = of_quarter(60)
+    way = np.array((math.cos(turn), math.sin(turn)))
+    piece = replace(piece, grain_line=piece.cut_line.mean(axis=0) + np.outer((-30, 30), way))
+    made = lettering(piece, piece.texts)
+    outline = shapely.Polygon(piece.cut_line)
+    arrow = shapely.MultiLineString(arrow_lines(made.grain_line))
+    assert made.grain_line[1] - made.grain_line[0] == pytest.approx(60.0 * way)
+    assert arrow.distance(outline) > 2.0
+    assert arrow.distance(shapely.Polygon(made.box)) > 2.0
+    assert shapely.LineString(made.grain_leader).distance(outline.exterior) < 1e-9
+    assert not shapely.LineString(made.grain_leader).crosses(outline)
+    low, high = made.extent.min(axis=0), made.extent.max(axis=0)
+    assert shapely.box(*low, *high).covers(arrow)
+    drawn = [stroke for stroke in draw(piece).strokes if stroke.role == "grain"]
+    assert len(drawn) == 4
+    assert not [stroke for stroke in draw(piece, texts=()).strokes if stroke.role == "grain"]

@@ -14,6 +14,7 @@ from ezdxf.tools.text_size import text_size
 
 from tests.pattern import strips
 from tests.pattern.strips import dxf_bytes, make_pieces
+from wrinkle_cad.pattern.piece.grain_place import arrow_lines
 from wrinkle_cad.pattern.piece.lettering import lettering
 from wrinkle_cad.pattern.piece.options import PieceSettings
 
@@ -132,14 +133,29 @@ def test_a_piece_too_narrow_for_letters_has_them_beside_it_with_a_leader():
 
 
 def test_the_grain_line_is_clear_of_texts_and_rulings():
-    settings = PieceSettings(rulings=True)
+    settings = PieceSettings(rulings=True, seam_allowance=(6.0, 6.0, 6.0, 6.0))
     for seed in range(6):
         for piece in make_pieces(*strips.random_strip(seed), name="s", settings=settings):
             made = lettering(piece, piece.texts)
-            grain = shapely.LineString(made.grain_line)
+            grain = shapely.MultiLineString(arrow_lines(made.grain_line))
             assert not grain.intersects(shapely.Polygon(made.box))
+            for outline in (piece.sew_line, piece.cut_line):
+                assert grain.distance(shapely.LinearRing(outline)) > 0.4
             for line in made.rulings:
                 assert grain.distance(shapely.LineString(line)) > 0.9
+
+
+def test_on_a_piece_too_narrow_for_arrowheads_the_grain_line_stands_beside():
+    (piece,) = make_pieces(*strips.rectangle(120.0, 2.5), name="lace")
+    made = lettering(piece, piece.texts)
+    assert shapely.LineString(made.grain_line).distance(shapely.Polygon(piece.cut_line)) > 2.0
+    assert shapely.LineString(made.grain_leader).distance(shapely.LinearRing(piece.cut_line)) < 1e-9
+    # The formats of cutting rooms have it in the piece.
+    document = ezdxf.read(io.StringIO(dxf_bytes([piece], profile="aama").decode()))
+    (line,) = [e for b in document.blocks for e in b.query("LINE[layer=='7']")]
+    assert shapely.Polygon(piece.cut_line).contains(
+        shapely.LineString([tuple(line.dxf.start)[:2], tuple(line.dxf.end)[:2]])
+    )
 
 
 def test_moving_a_piece_moves_its_texts_and_changes_nothing_else():

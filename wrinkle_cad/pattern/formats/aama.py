@@ -75,7 +75,7 @@ def block_document(
     for piece in pieces:
         name = _block_name(piece, names)
         block = document.blocks.new(name)
-        lettered = lettering(piece, [text for text, _ in _texts(piece, profile)])
+        lettered = _lettered(piece, profile)
         findings += _write_texts(block, piece, lettered, profile)
         _write_lines(block, piece, lettered, profile)
         _write_marks(block, piece, profile)
@@ -127,7 +127,12 @@ def _block_name(piece: PatternPiece, taken: set[str]) -> str:
 
 def block_text_box(piece: PatternPiece, profile: Profile) -> Floats:
     """Returns the corners (4, 2) mm of the block of a piece's texts, for laying pieces out."""
-    return lettering(piece, [text for text, _ in _texts(piece, profile)]).box
+    return _lettered(piece, profile).extent
+
+
+def _lettered(piece: PatternPiece, profile: Profile) -> Lettering:
+    # These formats have no bends, so that nothing has to make room for them.
+    return lettering(replace(piece, bends=None), [text for text, _ in _texts(piece, profile)])
 
 
 def _write_texts(
@@ -205,7 +210,10 @@ def _write_lines(
         for notch in (notch for notch in piece.notches if not notch.is_cut):
             for line in notch_lines(notch):
                 _write_contour(block, line, np.ones(2, np.bool_), styles["mark"], is_closed=False)
-    _write_arrow(block, lettered.grain_line, styles.get("grain"))
+    # These formats want the grain line inside its piece, however narrow that is.
+    is_inside = lettered.grain_leader is None
+    grain = lettered.grain_line if is_inside else piece.grain_line
+    _write_arrow(block, grain, styles.get("grain"))
     if piece.stretch_line is not None:
         _write_arrow(block, piece.stretch_line, styles.get("stretch"))
 

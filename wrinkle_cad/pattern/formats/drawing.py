@@ -9,7 +9,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from wrinkle_cad.pattern.piece.lettering import arrow_lines, lettering
+from wrinkle_cad.pattern.piece.grain_place import arrow_lines
+from wrinkle_cad.pattern.piece.lettering import lettering
 from wrinkle_cad.pattern.piece.notch_forms import notch_lines
 from wrinkle_cad.pattern.piece.piece import Floats, PatternPiece, frozen
 
@@ -84,7 +85,11 @@ def draw(piece: PatternPiece, *, texts: Sequence[str] | None = None) -> Drawing:
     if piece.bends is not None:
         for line, fold in zip(piece.bends.lines, piece.bends.fold, strict=True):
             strokes.append(Stroke("bend_down" if fold > 0.0 else "bend_up", line))
-    strokes += [Stroke("grain", line) for line in arrow_lines(lettered.grain_line)]
+    # On a sheet there is no room beside a piece, and the grain runs along the sheet.
+    if lettered.grain_leader is None or texts is None:
+        strokes += [Stroke("grain", line) for line in arrow_lines(lettered.grain_line)]
+    if lettered.grain_leader is not None and texts is None:
+        strokes.append(Stroke("grain", lettered.grain_leader))
     if piece.stretch_line is not None:
         strokes += [Stroke("stretch", line) for line in arrow_lines(piece.stretch_line)]
     if lettered.leader is not None and written:
@@ -104,5 +109,5 @@ def draw(piece: PatternPiece, *, texts: Sequence[str] | None = None) -> Drawing:
 
 
 def text_box(piece: PatternPiece) -> Floats:
-    """Returns the corners (4, 2) mm of the block of a piece's texts, for laying pieces out."""
-    return lettering(piece, piece.texts).box
+    """Returns points (k, 2) mm around texts and what else stands beside a piece, to lay it out."""
+    return lettering(piece, piece.texts).extent

@@ -2,7 +2,8 @@
 
 The texts form a block of one or more columns. It is put where it is largest, within limits, in what
 the piece's lines leave free: first clear of the rulings, then over rulings that are broken around
-it, then, where the piece is too narrow for readable letters, beside it with a leader.
+it, then, where the piece is too narrow for readable letters, beside it with a leader. Rulings are
+broken around the grain line, too.
 """
 
 from __future__ import annotations
@@ -18,6 +19,7 @@ import shapely
 
 from wrinkle_cad import settings
 
+from .grain_place import CLEAR, SIDE, arrow_lines, grain_lines
 from .notch_forms import notch_lines
 from .piece import Floats, PatternPiece, frozen
 from .vacancy import Vacancy
@@ -28,8 +30,6 @@ _COMFORTABLE: Final = 3.0
 """mm; letters of this height are not looked for any longer."""
 _ANGLES: Final = (0, 15, -15, 30, -30, 45, -45, 60, -60, 75, -75, 90)
 """deg; readable from below or from the right."""
-_CLEAR: Final = 1.0
-"""mm between a block of texts and any line."""
 _PITCH: Final = 1.5
 """Heights of a letter from one base line to the next."""
 _DESCENT: Final = 0.35
@@ -40,12 +40,6 @@ _WIDE: Final = frozenset("MWmw@%")
 _WIDE_ADVANCE: Final = 1.45
 _COLUMN_GAP: Final = 2.0
 """Heights of a letter between columns."""
-_BESIDE: Final = 8.0
-"""mm from a piece to the texts beside it."""
-_ARROW_HALF: Final = 1.05
-"""mm; half the breadth of an arrowhead."""
-_SHORTEST_GRAIN: Final = 8.0
-"""mm; a grain line between bends has room for two arrowheads."""
 _HOLE: Final = 1.0
 """mm; radius that is kept free around a drill hole."""
 
@@ -76,10 +70,19 @@ class Lettering:
     """(2, 2) mm from the block to the cut line, None where it stands inside."""
     grain_line: Floats
     """(2, 2) mm, moved or shortened to make room."""
+    grain_leader: Floats | None
+    """(2, 2) mm from the grain line to the cut line, None where it stands inside."""
     rulings: tuple[Floats, ...]
     """(k, 2) mm each, broken around the block and the grain line."""
     ruling_fold: tuple[float, ...]
     """(r,) rad, of each of them."""
+
+    @property
+    def extent(self) -> Floats:
+        """(k, 2) mm, points around the texts and what else stands beside the piece."""
+        if self.grain_leader is None:
+            return self.box
+        return frozen(np.vstack((self.box, *arrow_lines(self.grain_line))))
 
 
 @dataclass(frozen=True, slots=True)
@@ -109,6 +112,7 @@ def lettering(piece: PatternPiece, lines: Sequence[str]) -> Lettering:
         box=frozen(made.box + origin),
         leader=None if made.leader is None else frozen(made.leader + origin),
         grain_line=frozen(made.grain_line + origin),
+        grain_leader=None if made.grain_leader is None else frozen(made.grain_leader + origin),
         rulings=tuple(frozen(line + origin) for line in made.rulings),
         ruling_fold=made.ruling_fold,
     )
@@ -175,7 +179,7 @@ def _inside(piece: PatternPiece, lines: Sequence[str]) -> Lettering | None:
     for breaks_rulings in (False, True):
         if breaks_rulings and not len(piece.rulings):
             break
-        for grain in _grain_lines(piece):
+        for grain in grain_lines(piece):
             free = _free(piece, grain, with_rulings=not breaks_rulings)
             # Not even one row of the lowest letters has room between the lines.
             if free.buffer(-0.49 * (1.0 + _DESCENT) * _HEIGHTS[-1]).is_empty:
@@ -194,29 +198,6 @@ def _inside(piece: PatternPiece, lines: Sequence[str]) -> Lettering | None:
     return None
 
 
-def _grain_lines(piece: PatternPiece) -> tuple[Floats, ...]:
-    """Returns the grain line between bends, then its far and its near half."""
-    line = _between_bends(piece)
-    tail, head = line
-    middle = 0.5 * (tail + head)
-    return line, frozen((middle, head)), frozen((tail, middle))
-
-
-def _between_bends(piece: PatternPiece) -> Floats:
-    """Returns the longest part of the grain line that crosses no bend, all of it if none is long.
-
-    Rulings are broken around the grain line; a bend is a line that a machine follows.
-    """
-    if piece.bends is None or not len(piece.bends.lines):
-        return piece.grain_line
-    bends = shapely.union_all(shapely.linestrings(piece.bends.lines)).buffer(_CLEAR + _ARROW_HALF)
-    parts = shapely.get_parts(shapely.LineString(piece.grain_line).difference(bends))
-    longest = max(parts, key=lambda part: float(part.length), default=shapely.LineString())
-    if longest.length < _SHORTEST_GRAIN:
-        return piece.grain_line
-    return frozen(longest.coords)
-
-
 def _free(piece: PatternPiece, grain: Floats, *, with_rulings: bool) -> shapely.Geometry:
     """Returns what no line of a piece takes, with room around every line."""
     taken = [shapely.LineString(arrow) for arrow in arrow_lines(grain)]
@@ -230,8 +211,8 @@ def _free(piece: PatternPiece, grain: Floats, *, with_rulings: bool) -> shapely.
     if with_rulings:
         taken += list(shapely.linestrings(drawn_rulings(piece)[0]))
     inner = shapely.Polygon(piece.sew_line)
-    inner = inner.intersection(shapely.Polygon(piece.cut_line)).buffer(-_CLEAR)
-    return inner.difference(shapely.union_all(taken).buffer(_CLEAR, quad_segs=2))
+    inner = inner.intersection(shapely.Polygon(piece.cut_line)).buffer(-CLEAR)
+    return inner.difference(shapely.union_all(taken).buffer(CLEAR, quad_segs=2))
 
 
 def _placed(
@@ -277,14 +258,14 @@ def _beside(piece: PatternPiece, lines: Sequence[str]) -> Lettering:
     low, high = piece.cut_line.min(axis=0), piece.cut_line.max(axis=0)
     size = height * np.array((block.width, block.height))
     if size[0] <= high[0] - low[0]:
-        corner = np.array((low[0], high[1] + _BESIDE))
-        start = corner + np.array((0.5 * size[0], -_CLEAR))
+        corner = np.array((low[0], high[1] + SIDE))
+        start = corner + np.array((0.5 * size[0], -CLEAR))
     else:
-        corner = np.array((high[0] + _BESIDE, 0.5 * (low[1] + high[1] - size[1])))
-        start = corner + np.array((-_CLEAR, 0.5 * size[1]))
+        corner = np.array((high[0] + SIDE, 0.5 * (low[1] + high[1] - size[1])))
+        start = corner + np.array((-CLEAR, 0.5 * size[1]))
     rows, box = _turned(block, lines, corner, height, 0.0)
     way = shapely.shortest_line(shapely.Point(start), shapely.LinearRing(piece.cut_line))
-    return _with_lines(piece, rows, box, np.array(way.coords), _grain_lines(piece)[0])
+    return _with_lines(piece, rows, box, np.array(way.coords), grain_lines(piece)[0])
 
 
 def _with_lines(
@@ -295,8 +276,8 @@ def _with_lines(
     grain: Floats,
 ) -> Lettering:
     """Returns the texts with the rulings broken around them and around the grain line."""
-    windows = [shapely.Polygon(box).buffer(_CLEAR)]
-    windows += [shapely.LineString(arrow).buffer(_CLEAR) for arrow in arrow_lines(grain)]
+    windows = [shapely.Polygon(box).buffer(CLEAR)]
+    windows += [shapely.LineString(arrow).buffer(CLEAR) for arrow in arrow_lines(grain)]
     window = shapely.union_all(windows)
     kept: list[Floats] = []
     folds: list[float] = []
@@ -306,7 +287,16 @@ def _with_lines(
             if part.length > piece.tolerance:
                 kept.append(np.array(part.coords))
                 folds.append(float(fold))
-    return Lettering(rows, box, leader, grain, tuple(kept), tuple(folds))
+    return Lettering(
+        rows, box, leader, grain, _grain_leader(piece, grain), tuple(kept), tuple(folds)
+    )
+
+
+def _grain_leader(piece: PatternPiece, grain: Floats) -> Floats | None:
+    if shapely.Polygon(piece.cut_line).intersects(shapely.LineString(grain)):
+        return None
+    middle = shapely.Point(0.5 * (grain[0] + grain[1]))
+    return np.array(shapely.shortest_line(middle, shapely.LinearRing(piece.cut_line)).coords)
 
 
 def drawn_rulings(piece: PatternPiece) -> tuple[Floats, Floats]:
@@ -316,19 +306,3 @@ def drawn_rulings(piece: PatternPiece) -> tuple[Floats, Floats]:
     """
     is_folded = np.abs(piece.ruling_fold) >= settings.FLAT_FOLD
     return piece.rulings[is_folded], piece.ruling_fold[is_folded]
-
-
-def arrow_lines(line: Floats) -> tuple[Floats, ...]:
-    """Returns a line (2, 2) with an arrowhead at both ends as polylines, (k, 2) mm each."""
-    tail, head = line
-    step = head - tail
-    length = float(np.hypot(*step))
-    along = step / length if length > 0.0 else np.array((1.0, 0.0))
-    across = np.array((-along[1], along[0]))
-    size = min(3.0, 0.25 * length)
-
-    def tip(at: Floats, back: Floats) -> Floats:
-        foot = at + size * back
-        return np.vstack((foot + 0.35 * size * across, at, foot - 0.35 * size * across))
-
-    return np.vstack((tail, head)), tip(tail, along), tip(head, -along)
