@@ -76,4 +76,4 @@ def test_no_writable_cache_is_a_problem(tmp_path: Path) -> None:
     # Nothing can be made below a device, not even by root.
     found = diagnose_cache((Path("/dev/null/cache"),))
     assert not found.is_ok
-    assert "WRINKLE_CAD_CACHE_DIR" in found.message
+    assert "NUMBA_CACHE_DIR" in found.message

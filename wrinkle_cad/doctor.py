@@ -6,6 +6,7 @@ import ctypes
 import platform
 import subprocess
 import sys
+import tempfile
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from importlib import metadata
@@ -39,8 +40,6 @@ def diagnose(environment: Mapping[str, str]) -> tuple[Diagnosis, ...]:
     Args:
         environment: the environment variables of the process.
     """
-    from wrinkle_cad.strip.compiler.folders import cache_folders
-
     return (
         diagnose_python(sys.version_info[:2]),
         *(
@@ -51,7 +50,7 @@ def diagnose(environment: Mapping[str, str]) -> tuple[Diagnosis, ...]:
         diagnose_wheels(_installed_version),
         diagnose_build123d(_installed_version("build123d")),
         diagnose_kernel(sys.executable),
-        diagnose_cache(cache_folders(environment)),
+        diagnose_cache(_numba_cache_folders(environment)),
     )
 
 
@@ -128,15 +127,13 @@ def diagnose_kernel(python: str) -> Diagnosis:
 
 
 def diagnose_cache(folders: tuple[Path, ...]) -> Diagnosis:
-    """Whether compiled code can be kept: it is kept in the first folder that can be written."""
-    from wrinkle_cad.strip.compiler.folders import is_writable
-
+    """Whether compiled code can be kept: numba writes to the first folder that it may."""
     for folder in folders:
-        if is_writable(folder):
+        if _is_writable(folder):
             return Diagnosis("compile cache", True, str(folder))
     advice = (
         f"no writable folder among {', '.join(str(folder) for folder in folders)}: every start "
-        "compiles anew, about 5 s. Set WRINKLE_CAD_CACHE_DIR to a writable folder."
+        "compiles anew, up to a minute. Set NUMBA_CACHE_DIR to a writable folder."
     )
     return Diagnosis("compile cache", False, advice)
 
@@ -150,3 +147,21 @@ def _installed_version(distribution: str) -> str | None:
 
 def _series(version: str) -> str:
     return ".".join(version.split(".")[:2])
+
+
+def _numba_cache_folders(environment: Mapping[str, str]) -> tuple[Path, ...]:
+    # numba's order: NUMBA_CACHE_DIR, then beside the source, then the user's cache folder.
+    chosen = environment.get("NUMBA_CACHE_DIR")
+    if chosen:
+        return (Path(chosen),)
+    home = environment.get("XDG_CACHE_HOME") or str(Path("~/.cache").expanduser())
+    return (Path(__file__).parent / "strip" / "__pycache__", Path(home) / "numba")
+
+
+def _is_writable(folder: Path) -> bool:
+    existing = next((path for path in (folder, *folder.parents) if path.exists()), Path())
+    try:
+        with tempfile.TemporaryFile(dir=existing):
+            return True
+    except OSError:
+        return False

@@ -268,7 +268,7 @@ BATCH_MEMORY_GIB: Final = 4.0
 """GiB of address space for one worker of a batch."""
 
 BATCH_LEAST_MEMORY_GIB: Final = 2.0
-"""GiB; the CAD kernel alone maps 1.2, and fail in odd ways just above that."""
+"""GiB; the CAD kernel and numba alone map 1.2, and fail in odd ways just above that."""
 
 BATCH_MEMORY_HIT: Final = 0.85
 """A worker that crashes with more than this share of its memory mapped ran into the limit."""

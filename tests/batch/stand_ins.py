@@ -79,7 +79,7 @@ def talkative_job(job: Job, *, progress: Progress | None = None) -> JobDone | Jo
 def worker_id_job(job: Job, *, progress: Progress | None = None) -> JobDone | JobFailed:
     """Writes down which process it ran in, and that process's settings."""
     path = job.output_dir / f"{job.name}.json"
-    threads = {name: os.environ.get(name) for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS")}
+    threads = {name: os.environ.get(name) for name in ("NUMBA_NUM_THREADS", "OMP_NUM_THREADS")}
     path.write_text(json.dumps({"pid": os.getpid(), "threads": threads}))
     return JobDone(job=job, outputs=(path,), summary={}, seconds={})
 

@@ -1,6 +1,6 @@
 """The same bytes whatever the processor can do.
 
-Another processor is played by what numpy, OpenBLAS and the compiler are told to use of this one.
+Another processor is played by what numpy, OpenBLAS and numba are told to use of this one.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ NO_VECTORS = {
     "NPY_DISABLE_CPU_FEATURES": " ".join(np.show_config("dicts")["SIMD Extensions"]["found"])
 }
 KERNELS = [{}, *({"OPENBLAS_CORETYPE": name} for name in ("Haswell", "Prescott", "SkylakeX"))]
-PLAIN_COMPILER = {"WRINKLE_CAD_PROCESSOR": "x86-64"}
+PLAIN_COMPILER = {"NUMBA_CPU_NAME": "generic", "NUMBA_CPU_FEATURES": ""}
 
 
 def inputs() -> dict[str, list[str]]:
@@ -92,5 +92,5 @@ def test_every_example_is_the_same_on_every_processor(
 def test_every_example_is_the_same_compiled_for_any_processor(
     expected: dict[str, bytes], tmp_path: Path
 ) -> None:
-    cache = {"WRINKLE_CAD_CACHE_DIR": str(tmp_path / "cache")}
+    cache = {"NUMBA_CACHE_DIR": str(tmp_path / "cache")}
     check(made(list(inputs()), tmp_path / "made", {**PLAIN_COMPILER, **cache}), expected)

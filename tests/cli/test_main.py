@@ -94,7 +94,7 @@ def test_doctor_finds_nothing_wrong_here() -> None:
 
 
 def test_doctor_says_when_the_cache_cannot_be_written() -> None:
-    done = wrinkle_cad("doctor", WRINKLE_CAD_CACHE_DIR="/dev/null/cache")
+    done = wrinkle_cad("doctor", NUMBA_CACHE_DIR="/dev/null/cache")
     assert done.returncode == 1
     assert "compile cache" in done.stdout
 

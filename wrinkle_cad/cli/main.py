@@ -182,15 +182,12 @@ def _run(given: argparse.Namespace) -> int:
     from wrinkle_cad.batch.alone import run_alone
     from wrinkle_cad.job.job import make_job
     from wrinkle_cad.job.outcome import JobFailed
-    from wrinkle_cad.strip.compiler.folders import sentence_if_nothing_is_kept
 
     from .screen import progress_on_screen
 
     job = make_job(given.input, job_keywords(given, os.environ), given.job)
     with progress_on_screen(is_wanted=not given.quiet) as progress:
         outcome = run_alone(job, progress=progress, timeout=given.timeout, memory=given.memory)
-    if not given.quiet and (told := sentence_if_nothing_is_kept(os.environ)):
-        complain(told)
     if isinstance(outcome, JobFailed):
         return _failed(given, outcome)
     if not given.quiet:

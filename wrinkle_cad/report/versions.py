@@ -13,7 +13,7 @@ _DISTRIBUTIONS: Final = (
     "cadquery-ocp-novtk",
     "cadquery",
     "numpy",
-    "llvmlite",
+    "numba",
     "ezdxf",
     "shapely",
 )

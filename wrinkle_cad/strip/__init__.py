@@ -36,7 +36,7 @@ planarity
     The distance in mm that does not count when it is asked whether points lie in one plane.
 
 Not handled: more than two rails, branching strips. Names are exported lazily (PEP 562): importing
-the folder compiles nothing and loads no compiler.
+the folder compiles nothing and loads no numba.
 """
 
 from __future__ import annotations

@@ -151,10 +151,7 @@ def follow_around(choices: npt.NDArray[np.uint8], left: Integers, start: int) ->
         start: column of the cover.
     """
     m = choices.shape[0]
-    farthest = 0
-    for i in range(len(left)):
-        farthest = max(farthest, left[i])
-    steps = np.zeros(2 * m + 4 * choices.shape[1] + farthest + 4, dtype=np.int8)
+    steps = np.zeros(2 * m + 4 * choices.shape[1] + left.max() + 4, dtype=np.int8)
     number, i, j, step = 1, 1, start, 0
     while i <= m:
         step = (choices[i - 1, j - left[i - 1]] >> step) & 1

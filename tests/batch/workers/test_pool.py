@@ -131,7 +131,7 @@ def test_one_worker_does_many_files_with_one_thread_each(bench: Bench) -> None:
     seen = [json.loads(content) for content in bench.files().values()]
     assert len({entry["pid"] for entry in seen}) == 1
     assert seen[0]["pid"] != os.getpid()
-    assert seen[0]["threads"] == {"OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"}
+    assert seen[0]["threads"] == {"NUMBA_NUM_THREADS": "1", "OMP_NUM_THREADS": "1"}
 
 
 def test_phases_are_told(bench: Bench) -> None:

@@ -4,11 +4,11 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 import pytest
+from numba import njit
 from numpy.typing import NDArray
 from scipy.interpolate import BSpline
 
 from wrinkle_cad.errors import InputError
-from wrinkle_cad.strip.compiled import compiled
 from wrinkle_cad.strip.curve.sampling import Samples, sample_curve
 
 FloatArray = NDArray[np.float64]
@@ -83,20 +83,19 @@ def chord_gaps(
     return np.array(gaps)
 
 
-@compiled
+@njit
 def farthest(x: FloatArray, i: int, tolerance: float, stop_at_first_failure: bool) -> int:
     """Dense point with the longest chord from dense point i, by trying all of them."""
     best = i + 1
     for j in range(i + 1, len(x)):
-        ux, uy, uz = x[j] - x[i]
-        square = ux * ux + uy * uy + uz * uz
+        u = x[j] - x[i]
+        square = np.dot(u, u)
         ok = True
         for k in range(i + 1, j):
-            vx, vy, vz = x[k] - x[i]
-            along = ux * vx + uy * vy + uz * vz
-            share = 0.0 if square == 0 else min(1.0, max(0.0, along / square))
-            wx, wy, wz = vx - share * ux, vy - share * uy, vz - share * uz
-            if wx * wx + wy * wy + wz * wz > tolerance * tolerance:
+            v = x[k] - x[i]
+            share = 0.0 if square == 0 else min(1.0, max(0.0, np.dot(v, u) / square))
+            w = v - share * u
+            if np.dot(w, w) > tolerance * tolerance:
                 ok = False
                 break
         if ok:

@@ -24,7 +24,7 @@ from wrinkle_cad.errors import WrinkleError
 
 from .task import Task, run_task
 
-_THREAD_SETTINGS: Final = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS")
+_THREAD_SETTINGS: Final = ("NUMBA_NUM_THREADS", "OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS")
 _PARENT_CHECK_S: Final = 0.5
 _PHASE_INTERVAL_S: Final = 0.1
 _SET_DEATH_SIGNAL: Final = 1

@@ -110,7 +110,7 @@ def meetings_of(
     ]
     size = _RESOLUTION * min(length for length in lengths if length > 0.0)
     rows = _near_pieces(p, q, distance, size)
-    groups = _groups_of(rows, np.argsort(rows[:, 0], kind="stable"))
+    groups = _groups_of(rows)
     found = [_meeting(rows[groups == number], p, q) for number in np.unique(groups)]
     return tuple(sorted(found, key=lambda meeting: (meeting.p_start, meeting.q_start)))
 
@@ -147,7 +147,7 @@ def _near_pieces(p: _Rail, q: _Rail, distance: float, size: float) -> Floats:
     stack = np.empty((256, 4))
     for i in range(len(p_pieces)):
         for j in range(len(q_pieces)):
-            if _boxes_apart(_kept(p_pieces, i), _kept(q_pieces, j), distance):
+            if _boxes_apart(p_pieces[i], q_pieces[j], distance):
                 continue
             stack[0, 0], stack[0, 1] = p.parameters[i], p.parameters[i + 1]
             stack[0, 2], stack[0, 3] = q.parameters[j], q.parameters[j + 1]
@@ -208,21 +208,11 @@ def _verdict(a: _Piece, b: _Piece, distance: float, size: float) -> int:
 
 
 @compiled
-def _pieces(rail: _Rail) -> Floats:
-    """(k, 7): what the piece between each two parameters consists of."""
-    rows = np.empty((len(rail.parameters) - 1, 7))
-    for i in range(len(rows)):
-        piece = _piece(rail, rail.parameters[i], rail.parameters[i + 1])
-        rows[i, 0], rows[i, 1], rows[i, 2] = piece.first
-        rows[i, 3], rows[i, 4], rows[i, 5] = piece.last
-        rows[i, 6] = piece.bulge
-    return rows
-
-
-@compiled
-def _kept(rows: Floats, i: int) -> _Piece:
-    first = (rows[i, 0], rows[i, 1], rows[i, 2])
-    return _Piece(first, (rows[i, 3], rows[i, 4], rows[i, 5]), rows[i, 6])
+def _pieces(rail: _Rail) -> list[_Piece]:
+    return [
+        _piece(rail, rail.parameters[i], rail.parameters[i + 1])
+        for i in range(len(rail.parameters) - 1)
+    ]
 
 
 @compiled
@@ -318,12 +308,11 @@ def _nearest(p: _Rail, q: _Rail, row: Floats) -> tuple[float, float, float]:
 
 
 @compiled
-def _groups_of(rows: Floats, order: Indices) -> Indices:
+def _groups_of(rows: Floats) -> Indices:
     """(k,): for each row, the least row that it hangs together with on both curves."""
     count = len(rows)
-    groups = np.empty(count, np.int64)
-    for k in range(count):
-        groups[k] = k
+    groups = np.arange(count)
+    order = np.argsort(rows[:, 0])
     for a in range(count):
         i = order[a]
         for b in range(a + 1, count):

@@ -293,9 +293,7 @@ def place_chain(
         (n-1, 2) unit directions from Q to P before each step of that rail. A bridge of zero length
         keeps the direction that the development gives it.
     """
-    n = 1
-    for k in range(len(steps)):
-        n += steps[k]
+    n = 1 + np.sum(steps)
     m = 2 + len(steps) - n
     p, q = np.zeros((m, 2)), np.zeros((n, 2))
     p_from, q_from = np.empty((m - 1, 2)), np.empty((n - 1, 2))
