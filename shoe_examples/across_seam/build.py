@@ -1,6 +1,6 @@
 """An upper of four panels whose seams the strip crosses: at the toe and at both sides.
 
-From the project's folder: python -m shoe_examples.across_seam.build [--picture]
+From the project's folder: python -m shoe_examples.across_seam.build
 Then, in this one: wrinkle-cad run across_seam.step --job job.toml -o out
 """
 

@@ -1,6 +1,6 @@
 """A gathered cuff around the ankle, in a ring-shaped opening below the collar.
 
-From the project's folder: python -m shoe_examples.cuff.build [--picture]
+From the project's folder: python -m shoe_examples.cuff.build [--result]
 Then, in this one: wrinkle-cad run cuff.step --job job.toml -o out
 """
 
@@ -56,5 +56,5 @@ def write_result() -> None:
 
 if __name__ == "__main__":
     main(HERE, parts())
-    if "--picture" in sys.argv:
+    if "--result" in sys.argv:
         write_result()

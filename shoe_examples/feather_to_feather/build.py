@@ -1,6 +1,6 @@
 """A strip from feather edge to feather edge: it ends on the upper's border and cuts it in two.
 
-From the project's folder: python -m shoe_examples.feather_to_feather.build [--picture]
+From the project's folder: python -m shoe_examples.feather_to_feather.build
 Then, in this one: wrinkle-cad run feather_to_feather.step --job job.toml -o out
 """
 

@@ -1,6 +1,6 @@
 """One wrinkle across the vamp: the paper's Fig. 11.
 
-From the project's folder: python -m shoe_examples.one_wrinkle.build [--picture]
+From the project's folder: python -m shoe_examples.one_wrinkle.build
 Then, in this one: wrinkle-cad run one_wrinkle.step --job job.toml -o out
 """
 
@@ -27,4 +27,4 @@ def parts() -> list[Part]:
 
 
 if __name__ == "__main__":
-    main(Path(__file__).parent, parts(), has_pattern=True)
+    main(Path(__file__).parent, parts())

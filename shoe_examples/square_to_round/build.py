@@ -1,6 +1,6 @@
 """A duct from a square of 200 mm to a circle of 100 mm, 150 mm above it: 4 planes and 4 cones.
 
-From the project's folder: python -m shoe_examples.square_to_round.build [--picture]
+From the project's folder: python -m shoe_examples.square_to_round.build [--result]
 Then, in this one: wrinkle-cad run square_to_round.step --job job.toml -o out
 """
 
@@ -11,7 +11,7 @@ from pathlib import Path
 
 from build123d import Edge, Pos, Rectangle
 
-from wrinkle_cad import Part, PieceSettings, WrinkleStrip, plot_pattern, write_step
+from wrinkle_cad import Part, PieceSettings, WrinkleStrip, write_step
 
 HERE = Path(__file__).parent
 ZINC = (0.62, 0.66, 0.70)
@@ -29,31 +29,14 @@ def parts() -> list[Part]:
 
 
 def write_result() -> None:
-    """Writes the duct, its pattern and a picture of both."""
-    import matplotlib as mpl
-
-    mpl.use("Agg")
-    import matplotlib.pyplot as plt
-
-    from shoe_examples.picture import draw
-
+    """Writes the duct and its pattern."""
     duct = WrinkleStrip(*rails(), name="duct", color=ZINC, tolerance=0.02)
     duct.export_step(HERE / "duct.step")
     pattern = duct.pattern(PieceSettings(tolerance=0.02, seam_allowance=(8.0, 8.0, 8.0, 8.0)))
     pattern.export_dxf(HERE / "duct.dxf")
-    picture = HERE / "picture.png"
-    faces = [face.wrapped for face in duct.shell().faces()]
-    draw([(faces, ZINC)], picture, views=((28.0, -62.0),))
-    figure = plt.figure(figsize=(14.0, 5.0), dpi=90)
-    left = figure.add_axes((0.0, 0.0, 0.45, 1.0))
-    left.imshow(plt.imread(picture))
-    left.set_axis_off()
-    plot_pattern(figure.add_axes((0.5, 0.08, 0.48, 0.88)), pattern.pieces)
-    figure.savefig(picture)
-    plt.close(figure)
 
 
 if __name__ == "__main__":
     write_step(HERE / "square_to_round.step", parts())
-    if "--picture" in sys.argv:
+    if "--result" in sys.argv:
         write_result()

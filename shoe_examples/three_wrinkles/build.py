@@ -1,6 +1,6 @@
 """Three wrinkles behind each other, as where the toes bend.
 
-From the project's folder: python -m shoe_examples.three_wrinkles.build [--picture]
+From the project's folder: python -m shoe_examples.three_wrinkles.build
 Then, in this one: wrinkle-cad run three_wrinkles.step --job job.toml -o out
 """
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import Final
 
 import numpy as np
@@ -33,5 +34,5 @@ def thumbnail(piece: PatternPiece) -> list[list[float]]:
         points = np.array(shape.simplify(coarseness).exterior.coords)[:-1]
     if size <= 0.0 or len(points) < 3:
         return []
-    digits = max(0, 3 - int(np.floor(np.log10(size))))
+    digits = max(0, 3 - math.floor(math.log10(size)))
     return [[round(float(part), digits) for part in point] for point in points - points.min(axis=0)]

@@ -2,8 +2,8 @@
 /* The surfaces as leather: a grain, soft light, a shadow on the ground. Made when first asked for. */
 Report.leather = (THREE, renderer, camera) => {
   const CREASE = Math.cos((35 * Math.PI) / 180);
-  const GRAIN_MM = 9, GRAIN_CELLS = 7, GRAIN_TEXELS = 56, GRAIN_DEPTH_MM = 0.09;
-  const HIDE = 0x8a6146, WRINKLE = 0x7f563c, LINING = 0xc9b394;
+  const GRAIN_MM = 9, GRAIN_CELLS = 7, GRAIN_TEXELS = 56, GRAIN_DEPTH_MM = Number(Report.color("grain-mm"));
+  const HIDE = Report.color("hide"), WRINKLE = Report.color("hide-strip"), LINING = Report.color("lining");
   const studio = new THREE.Scene(), shown = [];
 
   /* Cells as in the grain of a hide: how much nearer the nearest of scattered points is than the next. */
