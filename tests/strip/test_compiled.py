@@ -6,6 +6,10 @@ import subprocess
 import sys
 from pathlib import Path
 
+import numpy as np
+
+from wrinkle_cad.strip.compiled import compiled, inlined
+
 PACKAGE = Path(__file__).parents[2] / "wrinkle_cad"
 
 CODE = """
@@ -75,3 +79,21 @@ def test_code_is_compiled_anew_where_no_folder_can_be_written(tmp_path: Path) ->
     unwritable = {"HOME": "/dev/null", "XDG_CACHE_HOME": "/dev/null", "PYTHONPATH": str(tmp_path)}
     environment = {k: v for k, v in os.environ.items() if k != "NUMBA_CACHE_DIR"} | unwritable
     assert cache_of(tmp_path, environment) == "NullCache"
+
+
+def test_a_function_that_is_put_into_its_callers_gives_the_same_as_alone() -> None:
+    numbers = np.linspace(-3.0, 3.0, 41)
+    assert squares_in_a_loop(numbers).tolist() == [square(number) for number in numbers.tolist()]
+
+
+@inlined
+def square(number: float) -> float:
+    return number * number if number > 0.0 else -number * number
+
+
+@compiled
+def squares_in_a_loop(numbers: np.ndarray) -> np.ndarray:
+    squares = np.empty(numbers.size)
+    for k in range(numbers.size):
+        squares[k] = square(numbers[k])
+    return squares

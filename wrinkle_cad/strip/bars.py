@@ -34,6 +34,11 @@ class Bars(NamedTuple):
     least_cosine: float
     """Cosine of the largest fold that may be; below -1 where any may."""
 
+    @property
+    def is_none(self) -> bool:
+        """Whether everything may be."""
+        return self.bridges.size == 0 and self.least_cosine < -1.0
+
 
 def no_bars() -> Bars:
     """Returns the bars of a strip where everything may be.

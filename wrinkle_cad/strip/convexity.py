@@ -10,7 +10,7 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 
-from .compiled import compiled
+from .compiled import compiled, inlined
 from .rails import checked_planarity, checked_rails
 from .sightlines import VIEW_ROWS, look_along, padded_banks
 
@@ -18,17 +18,40 @@ Floats = npt.NDArray[np.float64]
 Bools = npt.NDArray[np.bool_]
 
 
-@compiled
-def _supports(view: Floats, j: int, neighbour: int, planarity: float) -> bool:
-    """Whether the plane through the bridge and this neighbour has all others on one side."""
-    x, y = view[neighbour, j], view[neighbour + 1, j]
-    lowest = highest = 0.0
-    for other in range(1, VIEW_ROWS, 2):
-        side = x * view[other + 1, j] - y * view[other, j]
-        lowest = min(lowest, side)
-        highest = max(highest, side)
-    slack = planarity * np.sqrt(x * x + y * y)
+@inlined
+def _holds(first: float, second: float, third: float, slack: float) -> bool:
+    """Whether three points lie on one side of a plane, each by the distance that is its side."""
+    lowest = min(min(min(0.0, first), second), third)
+    highest = max(max(max(0.0, first), second), third)
     return bool(lowest >= -slack or highest <= slack)
+
+
+@inlined
+def is_convex(
+    length: float,
+    squares: tuple[float, float, float, float],
+    heights: tuple[float, float, float, float],
+    sides: tuple[float, float, float, float, float, float],
+    planarity: float,
+) -> bool:
+    """Whether a bridge is locally convex, by what is seen along it; without branches.
+
+    Args:
+        length: mm; of the bridge.
+        squares: mm2; its neighbours' distances from its line, squared: before and after it on P,
+            before and after it on Q.
+        heights: mm; the roots of these.
+        sides: mm2; on which side of each neighbour the later ones lie: 12, 13, 14, 23, 24, 34.
+        planarity: mm; see judge_row.
+    """
+    limit = planarity * planarity
+    s12, s13, s14, s23, s24, s34 = sides
+    a, b, c, d = squares[0] > limit, squares[1] > limit, squares[2] > limit, squares[3] > limit
+    is_supported = a and _holds(s12, s13, s14, planarity * heights[0])
+    is_supported = is_supported or (b and _holds(-s12, s23, s24, planarity * heights[1]))
+    is_supported = is_supported or (c and _holds(-s13, -s23, s34, planarity * heights[2]))
+    is_supported = is_supported or (d and _holds(-s14, -s24, -s34, planarity * heights[3]))
+    return bool(is_supported or not (a or b or c or d) or length <= planarity)
 
 
 @compiled
@@ -41,16 +64,30 @@ def judge_row(view: Floats, planarity: float, valid: Bools) -> None:
             bridge's line give no plane, and a bridge this short is valid.
         valid: (n,) bool; written.
     """
-    limit = planarity * planarity
+    length, x1, y1, x2, y2 = view[0], view[1], view[2], view[3], view[4]
+    x3, y3, x4, y4 = view[5], view[6], view[7], view[8]
     for j in range(view.shape[1]):
-        is_supported = False
-        is_free = True
-        for neighbour in range(1, VIEW_ROWS, 2):
-            x, y = view[neighbour, j], view[neighbour + 1, j]
-            is_plane = x * x + y * y > limit
-            is_free = is_free and not is_plane
-            is_supported = is_supported or (is_plane and _supports(view, j, neighbour, planarity))
-        valid[j] = is_supported or is_free or view[0, j] <= planarity
+        squares = (
+            x1[j] * x1[j] + y1[j] * y1[j],
+            x2[j] * x2[j] + y2[j] * y2[j],
+            x3[j] * x3[j] + y3[j] * y3[j],
+            x4[j] * x4[j] + y4[j] * y4[j],
+        )
+        sides = (
+            x1[j] * y2[j] - y1[j] * x2[j],
+            x1[j] * y3[j] - y1[j] * x3[j],
+            x1[j] * y4[j] - y1[j] * x4[j],
+            x2[j] * y3[j] - y2[j] * x3[j],
+            x2[j] * y4[j] - y2[j] * x4[j],
+            x3[j] * y4[j] - y3[j] * x4[j],
+        )
+        heights = (
+            np.sqrt(squares[0]),
+            np.sqrt(squares[1]),
+            np.sqrt(squares[2]),
+            np.sqrt(squares[3]),
+        )
+        valid[j] = is_convex(length[j], squares, heights, sides, planarity)
 
 
 @compiled

@@ -10,7 +10,7 @@ import numpy.typing as npt
 from wrinkle_cad.settings import STEEPEST_HALF_FOLD
 from wrinkle_cad.strip.portable import atan2
 
-from .compiled import compiled
+from .compiled import compiled, inlined
 from .sightlines import BEFORE_P, LENGTH, NEXT_P
 
 Floats = npt.NDArray[np.float64]
@@ -45,16 +45,9 @@ class StepCosts(NamedTuple):
     """(2, n) float64, mm2; of the later step's triangle."""
 
 
-@compiled
-def fold_cost(
-    length: float,
-    ax: float,
-    ay: float,
-    first: float,
-    bx: float,
-    by: float,
-    second: float,
-    flatness: float,
+@inlined
+def fold_of(
+    length: float, sine: float, cosine: float, first: float, second: float, flatness: float
 ) -> tuple[float, float, float]:
     """The hinge energy of the fold at a bridge between two triangles that are not degenerate.
 
@@ -62,12 +55,11 @@ def fold_cost(
 
     Args:
         length: mm; of the bridge.
-        ax: mm; with ay the earlier triangle's third vertex, seen along the bridge.
-        ay: mm; see ax.
-        first: mm; length of (ax, ay), the earlier triangle's height.
-        bx: mm; with by the later triangle's third vertex.
-        by: mm; see bx.
-        second: mm; length of (bx, by), the later triangle's height.
+        sine: mm2; of the angle between both third vertices seen along the bridge, times both
+            heights; not negative.
+        cosine: mm2; minus the same angle's cosine, times both heights.
+        first: mm; the earlier triangle's height.
+        second: mm; the later triangle's height.
         flatness: mm; triangles are coplanar if the nearer of both third vertices to the other
             triangle's plane is no further from it and they lie on opposite sides of the bridge.
 
@@ -78,8 +70,6 @@ def fold_cost(
         costs no energy but is counted.
     """
     size = first * second
-    sine = abs(ay * bx - ax * by)
-    cosine = -(ax * bx + ay * by)
     is_plane = sine <= flatness * max(first, second)
     is_sharp = cosine < 0.0
     far = size + abs(cosine)
@@ -94,6 +84,33 @@ def fold_cost(
         1.0 if is_bent else 0.0,
         1.0 if is_back else 0.0,
     )
+
+
+@inlined
+def fold_cost(
+    length: float,
+    ax: float,
+    ay: float,
+    first: float,
+    bx: float,
+    by: float,
+    second: float,
+    flatness: float,
+) -> tuple[float, float, float]:
+    """The same, by the triangles' third vertices as they are seen along the bridge.
+
+    Args:
+        length: mm; of the bridge.
+        ax: mm; with ay the earlier triangle's third vertex.
+        ay: mm; see ax.
+        first: mm; length of (ax, ay), the earlier triangle's height.
+        bx: mm; with by the later triangle's third vertex.
+        by: mm; see bx.
+        second: mm; length of (bx, by), the later triangle's height.
+        flatness: mm; see fold_of.
+    """
+    sine = abs(ay * bx - ax * by)
+    return fold_of(length, sine, -(ax * bx + ay * by), first, second, flatness)
 
 
 class _Side(NamedTuple):

@@ -7,7 +7,8 @@ tuples compared in order, so one pass minimises all criteria over all paths, whe
 one path with the fewest invalid bridges and bends only its gaps less.
 
 The program runs from the last bridge to the first and remembers for each node which step to
-take next; of two steps that cost the same in every part of the objective it takes the P-step.
+take next; of two steps that cost the same in every part of the objective it takes the P-step. It
+looks at the bridges of a corridor only, where counts tell that no other can be on the best path.
 Sums of energies, areas or lengths are the same if they differ by no more than objective.REAL_TIE
 of themselves, so that round-off decides nothing; a result may cost more than the least by as much
 at each bridge.
@@ -21,7 +22,8 @@ import numpy.typing as npt
 from .bars import Bars, bar_row, no_bars
 from .compiled import compiled
 from .convexity import judge_row
-from .folding import StepCosts, cost_row, new_costs
+from .folding import HINGE, StepCosts, cost_row, new_costs
+from .narrow_search import narrow_steps
 from .objective import (
     AREA,
     BENDING,
@@ -141,7 +143,7 @@ def _decide_all(
     energy: int,
     bars: Bars,
 ) -> npt.NDArray[np.uint8]:
-    """The step to take from every bridge, (m, n) uint8, as decide_row writes it."""
+    """The step to take from every bridge as decide_row writes it, (m, (n+3)//4) uint8: 2 bits."""
     m, n = p.shape[0], q.shape[1]
     view = np.empty((VIEW_ROWS, n))
     valid = np.empty(n, dtype=np.bool_)
@@ -151,25 +153,28 @@ def _decide_all(
     banks[3] = bank_lengths(q_banks[:, 1:])
     p_lengths = bank_lengths(p_banks)
     ahead = np.zeros((n, len(weights)))
-    choices = np.empty((m, n), dtype=np.uint8)
+    row = np.empty(n, dtype=np.uint8)
+    choices = np.zeros((m, (n + 3) // 4), dtype=np.uint8)
     for i in range(m - 1, -1, -1):
         banks[0], banks[1] = p_lengths[i], p_lengths[i + 1]
         look_along(p[i], p_banks[:, i : i + 2], q, q_banks, view)
         judge_row(view, planarity, valid)
         cost_row(view, banks, nothing, planarity, energy, costs)
         bar_row(view, bars, i, costs)
-        decide_row(weights, i == m - 1, view, valid, costs, ahead, choices[i])
+        decide_row(weights, i == m - 1, view, valid, costs, ahead, row)
+        for j in range(n):
+            choices[i, j >> 2] |= row[j] << (2 * (j & 3))
     return choices
 
 
 @compiled
-def _follow(choices: npt.NDArray[np.uint8]) -> npt.NDArray[np.int8]:
+def _follow(choices: npt.NDArray[np.uint8], n: int) -> npt.NDArray[np.int8]:
     """The steps from the first bridge to the last, (m+n-2,) int8: 0 a P-step, 1 a Q-step."""
-    count = choices.shape[0] + choices.shape[1] - 2
+    count = choices.shape[0] + n - 2
     steps = np.empty(count, dtype=np.int8)
     i = j = step = 0
     for number in range(count):
-        step = (choices[i, j] >> step) & 1
+        step = (choices[i, j >> 2] >> (2 * (j & 3)) >> step) & 1
         steps[number] = step
         i, j = i + 1 - step, j + step
     return steps
@@ -187,7 +192,8 @@ def best_steps(
 ) -> npt.NDArray[np.int8]:
     """Returns the steps of the triangulation that costs least of all.
 
-    O(m n) time; memory: one byte per bridge and a few rows.
+    At most O(m n) time; memory: a quarter of a byte per bridge and a few rows. Where counts come
+    first, or have a price, and hardly any bridge is invalid, O(m+n) of both.
 
     Args:
         p: (m, 3) float64, mm; checked samples of directrix P.
@@ -201,11 +207,14 @@ def best_steps(
     Returns:
         (m+n-2,) int8: 0 a P-step, 1 a Q-step. Of equal continuations the P-step is taken.
     """
-    columns = np.ascontiguousarray(q.T)
+    if energy == HINGE and (bars is None or bars.is_none):
+        steps = narrow_steps(p, q, weights, planarity=planarity, nothing=nothing)
+        if steps is not None:
+            return steps
     choices = _decide_all(
         p,
         padded_banks(p),
-        columns,
+        np.ascontiguousarray(q.T),
         padded_banks(q),
         weights,
         planarity,
@@ -213,4 +222,4 @@ def best_steps(
         energy,
         no_bars() if bars is None else bars,
     )
-    return _follow(choices)
+    return _follow(choices, q.shape[0])

@@ -9,7 +9,7 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 
-from .compiled import compiled
+from .compiled import compiled, inlined
 
 Floats = npt.NDArray[np.float64]
 
@@ -41,30 +41,42 @@ def bank_lengths(banks: Floats) -> Floats:
     return lengths
 
 
-@compiled
-def _frames(start: Floats, q: Floats, length: Floats, first: Floats, second: Floats) -> None:
-    """Writes the lengths of bridges and two axes (3, n) that stand square on each.
+@inlined
+def frame_of(
+    x: float, y: float, z: float
+) -> tuple[float, float, float, float, float, float, float]:
+    """Returns the length of a bridge and two axes that stand square on it.
 
     The frame is that of Duff et al., "Building an orthonormal basis, revisited", Journal of
     Computer Graphics Techniques 6(1), 2017: no square root, no branch. A bridge of zero length gets
     the frame of the third axis.
+
+    Args:
+        x: mm; with y and z the bridge from P to Q.
+        y: mm; see x.
+        z: mm; see x.
     """
+    size = np.sqrt(x * x + y * y + z * z)
+    inverse = 1.0 / size if size > 0.0 else 0.0
+    ex, ey = x * inverse, y * inverse
+    ez = z * inverse if size > 0.0 else 1.0
+    sign = 1.0 if ez >= 0.0 else -1.0
+    a = -1.0 / (sign + ez)
+    b = ex * ey * a
+    return size, 1.0 + sign * ex * ex * a, sign * b, -sign * ex, b, sign + ey * ey * a, -ey
+
+
+@compiled
+def _frames(start: Floats, q: Floats, length: Floats, first: Floats, second: Floats) -> None:
+    """Writes the lengths of bridges and two axes (3, n) that stand square on each."""
     x, y, z = start[0], start[1], start[2]
     qx, qy, qz = q[0], q[1], q[2]
     ux, uy, uz = first[0], first[1], first[2]
     vx, vy, vz = second[0], second[1], second[2]
     for j in range(length.size):
-        ex, ey, ez = qx[j] - x, qy[j] - y, qz[j] - z
-        size = np.sqrt(ex * ex + ey * ey + ez * ez)
-        length[j] = size
-        inverse = 1.0 / size if size > 0.0 else 0.0
-        ex, ey = ex * inverse, ey * inverse
-        ez = ez * inverse if size > 0.0 else 1.0
-        sign = 1.0 if ez >= 0.0 else -1.0
-        a = -1.0 / (sign + ez)
-        b = ex * ey * a
-        ux[j], uy[j], uz[j] = 1.0 + sign * ex * ex * a, sign * b, -sign * ex
-        vx[j], vy[j], vz[j] = b, sign + ey * ey * a, -ey
+        length[j], ux[j], uy[j], uz[j], vx[j], vy[j], vz[j] = frame_of(
+            qx[j] - x, qy[j] - y, qz[j] - z
+        )
 
 
 @compiled

@@ -169,12 +169,8 @@ def _local(task: Task, bars: Bars) -> Steps:
         planarity=task.planarity,
         nothing=task.nothing,
         energy=task.energy,
-        bars=bars if _is_barred(bars) else None,
+        bars=None if bars.is_none else bars,
     )
-
-
-def _is_barred(bars: Bars) -> bool:
-    return bars.bridges.size > 0 or bars.least_cosine >= -1.0
 
 
 def _way_around(task: Task, constraints: Constraints, bars: Bars) -> Way:
@@ -198,7 +194,7 @@ def _local_way_around(task: Task, constraints: Constraints, bars: Bars) -> Way:
     m, n = len(task.p), len(task.q)
     start = constraints.pinned[0] if constraints.pinned else _shortest(task, bars)
     around = None
-    if _is_barred(bars) or len(constraints.pinned) > 1:
+    if not bars.is_none or len(constraints.pinned) > 1:
         own = bars.bridges if bars.bridges.size else np.zeros((m, n), dtype=np.bool_)
         rows, columns = np.arange(m + 1)[:, None], np.arange(n + 1)
         cover = own[(rows + start[0]) % m, (columns + start[1]) % n]
