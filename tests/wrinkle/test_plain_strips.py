@@ -106,9 +106,40 @@ def test_many_lines_against_waves_never_bend_more_than_by_the_fewest_invalid_bri
     assert bending <= (1 + 1e-9) * greedy
 
 
-def saddle() -> tuple[Edge, Edge]:
+WAVES = [
+    (turns, width, share)
+    for turns in (2, 3, 5, 6, 8)
+    for width in (10.0, 20.0, 40.0, 80.0)
+    for share in (0.1, 0.3, 0.5)
+]
+
+
+def bending_of_its_own(turns: int, width: float, height: float) -> float:
+    """How much a line against a wave bends, against the same with four times the samples."""
+    x = np.linspace(0.0, 200.0, 20 * turns)
+    wave = spline(np.stack((x, 0 * x + width, height * np.sin(2 * np.pi * turns * x / 200)), 1))
+    strip = WrinkleStrip(Line((0, 0, 0), (200, 0, 0)), wave)
+    finer = []
+    for rail, own in ((strip.p, strip.p_samples), (strip.q, strip.q_samples)):
+        u = own.parameters
+        at, step = u[:-1, None], np.diff(u)[:, None]
+        finer.append(rail.point_at(np.append((at + step * np.arange(4) / 4).ravel(), u[-1])))
+    fine = triangulate(finer[0], finer[1], planarity=5e-5)
+    return strip.triangulation.bending / fine.bending
+
+
+@pytest.mark.slow
+def test_a_line_against_a_wave_bends_as_with_four_times_the_samples() -> None:
+    above = [
+        case for case in WAVES if bending_of_its_own(case[0], case[1], case[2] * case[1]) > 1.15
+    ]
+    assert len(above) <= 0.1 * len(WAVES), above
+
+
+def saddle(half: float = 10.0, bow: float = 3.0) -> tuple[Edge, Edge]:
+    """Rails on z = xy / 40."""
     x = np.linspace(-50.0, 50.0, 51)
-    y = 10 + 3 * (x / 50) ** 2
+    y = half + bow * (x / 50) ** 2
     p, q = (spline(np.stack((x, side * y, side * x * y / 40), 1)) for side in (-1, 1))
     return p, q
 
@@ -117,6 +148,22 @@ def saddle() -> tuple[Edge, Edge]:
 def test_a_saddle_is_not_folded_back_for_a_few_bridges(tolerance: float) -> None:
     assert largest_fold_deg(WrinkleStrip(*saddle(), tolerance=tolerance)) < 55.0
     assert largest_fold_deg(WrinkleStrip(*saddle(), tolerance=tolerance, price=1.0)) < 40.0
+
+
+@pytest.mark.parametrize(("half", "bow"), [(4.0, 1.0), (5.0, 1.0), (6.0, 0.0)])
+@pytest.mark.parametrize("tolerance", [0.1, 0.01])
+def test_a_narrow_saddle_has_the_samples_not_to_be_folded(
+    half: float, bow: float, tolerance: float
+) -> None:
+    rails = saddle(half, bow)
+    assert largest_fold_deg(WrinkleStrip(*rails, tolerance=tolerance)) < 55.0
+    assert largest_fold_deg(WrinkleStrip(*rails, tolerance=tolerance, price=1.0)) < 40.0
+
+
+def test_skew_lines_are_not_folded_along_one_diagonal() -> None:
+    strip = WrinkleStrip(Line((0, 0, 0), (100, 0, 0)), Line((0, 20, 0), (100, 20, 53)))
+    assert largest_fold_deg(strip) < 55.0
+    assert strip.report.state == "stretched"
 
 
 def check_strap(rails: tuple[FloatArray, FloatArray]) -> None:

@@ -7,7 +7,7 @@ import math
 import numpy as np
 import pytest
 import shapely
-from build123d import Edge, Line, Polyline, Pos, Rectangle, Rot, Spline
+from build123d import Edge, Helix, Line, Polyline, Pos, Rectangle, Rot, Spline
 
 from wrinkle_cad import InputError, WrinkleStrip
 from wrinkle_cad.strip.constraints import lean_cosines
@@ -208,3 +208,18 @@ def test_the_best_cut_takes_the_smallest_sheet() -> None:
     assert sheets[1] <= sheets[0]
     assert strips[1].area_mm2 == pytest.approx(strips[0].area_mm2, rel=1e-9)
     assert not strips[1].unrolling.overlaps
+
+
+def test_a_limited_lean_keeps_to_the_helicoid_between_two_helices() -> None:
+    strip = WrinkleStrip(Helix(40, 40, 10), Helix(40, 40, 30), max_lean_deg=30.0)
+    pitch = 40.0 / (2.0 * math.pi)
+    radius = np.linspace(10.0, 30.0, 1001)
+    helicoid = 2.0 * math.pi * float(np.trapezoid(np.hypot(radius, pitch), radius))
+    assert strip.report.state == "stretched"
+    assert strip.area_mm2 == pytest.approx(helicoid, rel=0.02)
+
+
+def test_bridges_that_lean_along_a_curved_rail_have_their_surface_judged() -> None:
+    """They end further along the outer helix than those of a straight rail that lean no more."""
+    strip = WrinkleStrip(Helix(40, 40, 10), Helix(40, 40, 30), max_lean_deg=45.0)
+    assert strip.report.state == "stretched"

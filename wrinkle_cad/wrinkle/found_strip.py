@@ -42,6 +42,8 @@ NOTHING_UNUSED: Final = (0.0, 0.0, 0.0, 0.0)
 
 SAME_BENDING: Final = 1e-9
 """Energies closer than this share of themselves are equal: round-off is not to choose samples."""
+SAME_FOLD: Final = 1e-6
+"""rad; likewise for folds."""
 SAME_LENGTH: Final = 1e-12
 """The same for the lengths of a rail's chords."""
 
@@ -186,9 +188,9 @@ def _better(search: Search, mend: Mend, jointly: Pair, alone: Pair) -> tuple[Tri
     """The best triangulation between the samples taken jointly, if these bring anything; mended.
 
     Samples that a straight stretch has only because of the other rail are to keep the strip from
-    folding. Where it folds back no more, counts no more invalid bridges and bends no more without
-    them, they would only divide its planes. What a strip must be mended by counts as well: without
-    them more of its cones may turn back.
+    folding. Where it folds back no more, counts no more invalid bridges, bends no more and folds no
+    more sharply without them, they would only divide its planes. What a strip must be mended by
+    counts as well: without them more of its cones may turn back.
     """
     found = search(jointly[0].points, jointly[1].points)
     more = [len(new.points) - len(old.points) for new, old in zip(jointly, alone, strict=True)]
@@ -212,7 +214,13 @@ def _is_no_worse(plain: Triangulation, found: Triangulation) -> bool:
         plain.fold_back_count <= found.fold_back_count
         and plain.counted_invalid_count <= found.counted_invalid_count
         and plain.bending <= (1.0 + SAME_BENDING) * found.bending
+        and _sharpest_fold(plain) <= _sharpest_fold(found) + SAME_FOLD
     )
+
+
+def _sharpest_fold(strip: Triangulation) -> float:
+    """rad, not negative."""
+    return float(np.abs(strip.fold).max(initial=0.0))
 
 
 def _are_chords_kept(jointly: Samples, alone: Samples) -> bool:

@@ -3,9 +3,9 @@
 A straight rail has two vertices by its chord error alone. Opposite a tab or a wave of the other
 rail all rulings then gather at these two, and where the tab is flat no triangulation exists that
 does not fold. So a rail gets a vertex opposite each corner of the other one, and chords that are
-long against the distance between the rails, or opposite much turning, are split. Both rails are
-judged by the samples they have on their own: the order in which they are treated does not matter,
-nor which is P, nor which way they run.
+long against the distance between the rails, or opposite much turning, or along which the other rail
+winds about this one, are split. Both rails are judged by the samples they have on their own: the
+order in which they are treated does not matter, nor which is P, nor which way they run.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from wrinkle_cad.strip.portable import dot
+from wrinkle_cad.strip.portable import atan2, dot
 
 from .chebyshev import FloatArray, PointAt, evaluate
 from .nearest import nearest_on_polyline
@@ -29,6 +29,10 @@ CORNER_REACH: Final = 0.1
 """... unless one is there, within this share of the distance between the rails."""
 TURN_PER_PART: Final = math.radians(45.0)
 """So much turning of the other rail is opposite one chord at most."""
+TWIST_PER_PART: Final = math.radians(25.0)
+"""So much turn of the way to the other rail, about this one, is over one chord at most."""
+STEEP: Final = 0.3
+"""A way to the other rail that leaves this one at a smaller sine has no turn about it."""
 WIDTH_SHARE: Final = 0.25
 """Near pinched ends distances count as this share of the strip's largest width."""
 OPPOSITE_CHORDS: Final = 1.5
@@ -57,8 +61,9 @@ def sample_against(
     A corner of the other rail puts the place nearest to it on this one, unless a vertex lies within
     a tenth of the distance there. Then chords are split into parts of equal measure, at most 1
     each: the integral of ds / h, with h the distance from the other rail, but at least a quarter of
-    the strip's largest width and one and a half chords of the other rail there; and the turning of
-    the other rail at the vertices opposite, in units of 45 degrees.
+    the strip's largest width and one and a half chords of the other rail there; the turning of the
+    other rail at the vertices opposite, in units of 45 degrees; and how far the way to the other
+    rail turns about this one, in units of 25 degrees (two skew lines fold by so much less).
 
     Args:
         point_at: the rail, from (k,) float64 parameters to (k, 3) points in mm.
@@ -229,7 +234,29 @@ def _lengths_measure(
     rate = 1.0 / np.maximum(np.maximum(found.distance, least), OPPOSITE_CHORDS * coarse)
     rate = rate.reshape(len(chosen), looks + 1)
     grows: FloatArray = 0.5 * (rate[:, 1:] + rate[:, :-1]) * (length / looks)[:, None]
+    points = points_at(line, arc_lengths(line), places.ravel())
+    start, end = other[found.segment], other[found.segment + 1]
+    way = start + found.share[:, None] * (end - start) - points
+    along = np.diff(points.reshape(len(chosen), looks + 1, 3)[:, [0, -1]], axis=1)
+    grows += _turns_about(way.reshape(len(chosen), looks + 1, 3), along, least) / TWIST_PER_PART
     return grows
+
+
+def _turns_about(way: FloatArray, along: FloatArray, least: float) -> FloatArray:
+    """(c, looks) rad: how far ways (c, looks + 1, 3) turn about a direction (c, 1, 3) in each bin.
+
+    Where the rails are closer than ``least`` it counts by as much less.
+    """
+    along = along / np.sqrt(dot(along, along))[..., None]
+    across = way - dot(way, along)[..., None] * along
+    reach, width = np.sqrt(dot(way, way)), np.sqrt(dot(across, across))
+    before, after = across[:, :-1], across[:, 1:]
+    sine = dot(np.cross(before, after), np.broadcast_to(along, before.shape))
+    turn = np.abs(atan2(sine, dot(before, after)))
+    known = (width > STEEP * reach) & (width > 0.0)
+    share = np.where(known, np.minimum(reach / least, 1.0), 0.0)
+    turned: FloatArray = turn * np.minimum(share[:, :-1], share[:, 1:])
+    return turned
 
 
 def _add_turns(

@@ -1,4 +1,4 @@
-"""A closed strip: two turns are ruled, so that the one in the middle has no ends."""
+"""A closed strip: more than a turn is ruled, so that the turn in the middle has no ends."""
 
 from __future__ import annotations
 
@@ -14,9 +14,14 @@ from .rail_curve import RailCurve
 from .sheet import Sheet
 from .stations import Stations
 from .surface import FoundSheet, RuledStrip, rule_sheet, ruled_strip_of
+from .vectors import lengths
 
 Floats = npt.NDArray[np.float64]
 
+MARGIN_PER_WIDTH: Final = 8.0
+"""So many times the length of the longest bridge is ruled before and behind the turn ..."""
+MOST_MARGIN: Final = 0.5
+"""... but no more than this share of a turn."""
 SMOOTH_START: Final = 1e-6
 """rad, about; a closed rail whose tangent turns by less where it starts has no corner there."""
 
@@ -39,22 +44,19 @@ def rule_closed_strip(
         held: likewise; on the turn of the bridges.
     """
     rails = (p, q)
-    starts = [float(at[0]) for at in bridges]
-    turns = [_two_turns(rail, start) for rail, start in zip(rails, starts, strict=True)]
-    twice = [
-        np.concatenate((at, at[1:] + (rail.interval[1] - rail.interval[0])))
-        for rail, at in zip(rails, bridges, strict=True)
+    more = _with_margins(rails, bridges)
+    turns = [
+        _between(rail, float(at[0]), float(at[-1])) for rail, at in zip(rails, more, strict=True)
     ]
-    period = (p.interval[1] - p.interval[0], q.interval[1] - q.interval[0])
-    found = rule_sheet(turns[0], turns[1], (twice[0], twice[1]), max_lean, held.around(period))
+    found = rule_sheet(turns[0], turns[1], more, max_lean, held.around((_period(p), _period(q))))
     sheet = found.sheet
     along = sheet.p_arc + sheet.q_arc
     whole = p.length + q.length
-    first = int(np.searchsorted(along, whole / 2.0))
+    first = int(np.searchsorted(along, (along[-1] - whole) / 2.0))
     last = int(np.searchsorted(along, along[first] + whole * (1.0 - 1e-12)))
     both = ruled_strip_of(found, turns[0], turns[1])
     arcs = [
-        float(rail.arc_at(np.array([start]))[0]) for rail, start in zip(rails, starts, strict=True)
+        float(rail.arc_at(_inside(rail, at[:1]))[0]) for rail, at in zip(rails, more, strict=True)
     ]
     creases = tuple(
         _counted_from_start(crease, rails, arcs, first)
@@ -69,25 +71,50 @@ def rule_closed_strip(
     return replace(turn, creases=creases, radius=both.radius[first:last])
 
 
-def _two_turns(rail: RailCurve, start: float) -> RailCurve:
-    """The rail from a parameter on, twice round."""
+def _with_margins(
+    rails: tuple[RailCurve, RailCurve], bridges: tuple[Floats, Floats]
+) -> tuple[Floats, Floats]:
+    """The bridges of a turn, with those of a part of the turns before and behind."""
+    start, end = (rail.point_at(_inside(rail, at)) for rail, at in zip(rails, bridges, strict=True))
+    steps = lengths(np.diff(start, axis=0)) + lengths(np.diff(end, axis=0))
+    along = np.concatenate(([0.0], np.cumsum(steps)))
+    # A way of so much on each rail counts twice.
+    margin = 2.0 * MARGIN_PER_WIDTH * float(lengths(end - start).max())
+    margin = min(margin, MOST_MARGIN * float(along[-1]))
+    first = int(np.searchsorted(along, along[-1] - margin, side="right")) - 1
+    last = int(np.searchsorted(along, margin)) + 1
+    p, q = (
+        np.concatenate((at[first:-1] - period, at, at[1:last] + period))
+        for at, period in zip(bridges, map(_period, rails), strict=True)
+    )
+    return p, q
+
+
+def _period(rail: RailCurve) -> float:
+    return rail.interval[1] - rail.interval[0]
+
+
+def _inside(rail: RailCurve, u: Floats) -> Floats:
+    """The parameters on the first turn."""
+    period = _period(rail)
+    return rail.interval[0] + np.mod(u - rail.interval[0], period) if period > 0.0 else u
+
+
+def _between(rail: RailCurve, start: float, end: float) -> RailCurve:
+    """The rail from one parameter to another, round and round."""
     first, last = rail.interval
     period = last - first
     if period == 0.0:
         return rail
-
-    def inside(u: Floats) -> Floats:
-        return first + np.mod(u - first, period)
-
     ends = rail.tangents(np.array([first, last]), np.array([0, len(rail.edges) - 2]))[0]
     has_corner = float(np.abs(ends[0] - ends[1]).max()) > SMOOTH_START
     corners = [*rail.breaks, *([first] if has_corner else [])]
-    shifted = [at + turn * period for at in corners for turn in range(-1, 4)]
+    shifted = [at + turn * period for at in corners for turn in range(-2, 4)]
     return RailCurve(
-        lambda u: rail.point_at(inside(u)),
-        lambda u: rail.velocity_at(inside(u)),
-        (start, start + 2.0 * period),
-        tuple(sorted(at for at in shifted if start < at < start + 2.0 * period)),
+        lambda u: rail.point_at(_inside(rail, u)),
+        lambda u: rail.velocity_at(_inside(rail, u)),
+        (start, end),
+        tuple(sorted(at for at in shifted if start < at < end)),
     )
 
 

@@ -168,17 +168,29 @@ def finer_pairing(
 
 
 def _leaning(
-    nodes: tuple[Nodes, Nodes], low: Ints, high: Ints, slope: float, spacing: float
+    nodes: tuple[Nodes, Nodes],
+    low: Ints,
+    high: Ints,
+    arcs: tuple[Floats, Floats],
+    slope: float,
+    spacing: float,
 ) -> tuple[Ints, Ints]:
-    """The corridor, no wider at each node of P than rulings may lean to either side of its foot."""
+    """The corridor, no wider at each node of P than rulings may lean to either side of its foot.
+
+    Known pairs stay in it: along curved rails they may lean no more and yet end further away.
+    """
     p, q = nodes
     foot = nearest_on_polyline(p.point, q.point)
     at = q.arc[foot.segment] + foot.share * (q.arc[foot.segment + 1] - q.arc[foot.segment])
     # Two nodes to either side are kept, so that a way through is left.
-    reach = slope * foot.distance + 2.0 * spacing
-    first = np.searchsorted(q.arc, at - reach)
-    last = np.searchsorted(q.arc, at + reach, side="right") - 1
-    narrow_low, narrow_high = np.maximum(low, first), np.minimum(high, last)
+    slack = 2.0 * spacing
+    reach = slope * foot.distance + slack
+    last = len(arcs[0]) - 1
+    before = arcs[1][np.maximum(np.searchsorted(arcs[0], p.arc, side="right") - 1, 0)]
+    behind = arcs[1][np.minimum(np.searchsorted(arcs[0], np.append(p.arc[1:], p.arc[-1])), last)]
+    first = np.searchsorted(q.arc, np.minimum(at - reach, before - slack))
+    final = np.searchsorted(q.arc, np.maximum(at + reach, behind + slack), side="right") - 1
+    narrow_low, narrow_high = np.maximum(low, first), np.minimum(high, final)
     narrow_low[0], narrow_high[-1] = 0, len(q.arc) - 1
     narrow_high = np.maximum.accumulate(narrow_high)
     narrow_low = np.minimum.accumulate(narrow_low[::-1])[::-1]
@@ -200,7 +212,7 @@ def _paired(
     p, q = nodes
     low, high = corridor(p.arc, q.arc, *arcs, np.maximum(reach, REACH_IN_NODES * spacing))
     if max_lean is not None:
-        low, high = _leaning(nodes, low, high, math.tan(max_lean), spacing)
+        low, high = _leaning(nodes, low, high, arcs, math.tan(max_lean), spacing)
     pairs, ways = pair_nodes(
         p.point, q.point, p.tangent, q.tangent, p.arc, q.arc, low, high, bending
     )

@@ -154,36 +154,42 @@ def pair_nodes(
         ways: (k - 1,) int8.
     """
     start = np.zeros(p.shape[0] + 1, np.int64)
+    wide = 1
     for i in range(p.shape[0]):
         start[i + 1] = start[i] + high[i] - low[i] + 1
-    reached, cost = np.full((start[-1], 3), np.inf), np.full((start[-1], 3), np.inf)
-    plane = np.zeros((start[-1], 14))
+        wide = max(wide, high[i] - low[i] + 1)
     left, step = np.zeros((start[-1], 3), np.int8), np.zeros((start[-1], 3), np.int8)
-    reached[0, :] = 0.0
+    # Of costs and planes only this row of cells and the one before it are kept.
+    reached, cost = np.full((2 * wide, 3), np.inf), np.full((2 * wide, 3), np.inf)
+    plane = np.zeros((2 * wide, 14))
     size = 0.5 * (p_arc[-1] + q_arc[-1])
     weights = (bending, _SHORTNESS / (size * size))
     for i in range(p.shape[0]):
         i_corner = i > 0 and p_arc[i] == p_arc[i - 1]
+        row, last = (i % 2) * wide - low[i], ((i + 1) % 2) * wide - low[max(i - 1, 0)]
+        reached[row + low[i] : row + high[i] + 1] = np.inf
+        if i == 0:
+            reached[0] = 0.0
         for j in range(low[i], high[i] + 1):
             j_corner = j > 0 and q_arc[j] == q_arc[j - 1]
-            cell = start[i] + j - low[i]
+            cell, own = row + j, start[i] + j - low[i]
             length = _planes(p[i], q[j], a[i], b[j], plane[cell])
             if i > 0 and not i_corner and low[i - 1] <= j <= high[i - 1]:
-                before, ds = start[i - 1] + j - low[i - 1], p_arc[i] - p_arc[i - 1]
-                _step(reached, cost, step, plane, cell, before, ds, weights, P_FORWARD)
+                ds = p_arc[i] - p_arc[i - 1]
+                _step(reached, cost, step[own], plane, cell, last + j, ds, weights, P_FORWARD)
             if j > low[i] and not j_corner:
                 ds = q_arc[j] - q_arc[j - 1]
-                _step(reached, cost, step, plane, cell, cell - 1, ds, weights, Q_FORWARD)
-            _leave(reached[cell], cost[cell], left[cell], length * crease_cost(plane[cell, 12]))
+                _step(reached, cost, step[own], plane, cell, cell - 1, ds, weights, Q_FORWARD)
+            _leave(reached[cell], cost[cell], left[own], length * crease_cost(plane[cell, 12]))
             for back in range(1, 4):
                 i2, j2 = i - back % 2, j - back // 2
                 if (back % 2 and not i_corner) or (back // 2 and not j_corner):
                     continue
                 if low[i2] <= j2 <= high[i2]:
-                    source = start[i2] + j2 - low[i2]
+                    source = (last if back % 2 else row) + j2
                     rails = (p[i], q[j], a[i2], b[j2], a[i], b[j])
-                    _leave_corner(reached[source], cost[cell], left[cell], rails, length, back)
-    return _trace(cost, left, step, start, low)
+                    _leave_corner(reached[source], cost[cell], left[own], rails, length, back)
+    return _trace(cost[row + high[p.shape[0] - 1]], left, step, start, low)
 
 
 @compiled
@@ -221,6 +227,7 @@ def _leave_corner(
 @compiled
 def _planes(p: Floats, q: Floats, a: Floats, b: Floats, plane: Floats) -> float:
     """Notes normals, directions across and squared twist of a ruling; returns its length."""
+    plane[:] = 0.0
     dx, dy, dz = q[0] - p[0], q[1] - p[1], q[2] - p[2]
     length = math.sqrt(dx * dx + dy * dy + dz * dz)
     if length == 0.0:
@@ -278,11 +285,11 @@ def _step(
     twist = 0.25 * ds * (plane[before, 12] + plane[cell, 12])
     ruled = cost[before, RULED] + twist + short + weight * 0.5 * (p_turn**2 + q_turn**2)
     if ruled < reached[cell, RULED]:
-        reached[cell, RULED], step[cell, RULED] = ruled, rail
+        reached[cell, RULED], step[RULED] = ruled, rail
     own = p_turn if rail == P_FORWARD else q_turn
     fanned = cost[before, fan] + short + weight * own * own
     if fanned < reached[cell, fan]:
-        reached[cell, fan], step[cell, fan] = fanned, rail
+        reached[cell, fan], step[fan] = fanned, rail
 
 
 @compiled
@@ -295,7 +302,7 @@ def _trace(cost: Floats, left: Bytes, step: Bytes, start: Ints, low: Ints) -> tu
     pairs, ways = np.empty((at + 1, 2), np.int64), np.empty(at, np.int8)
     mode = 0
     for other in (1, 2):
-        if cost[cell, other] < cost[cell, mode]:
+        if cost[other] < cost[mode]:
             mode = other
     pairs[at, 0], pairs[at, 1] = i, j
     while at > 0:
