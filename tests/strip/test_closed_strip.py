@@ -8,6 +8,7 @@ from tests.strip.test_closed_search import every_way_around, ring, triangles_of
 from wrinkle_cad.errors import InputError
 from wrinkle_cad.strip import triangulate
 from wrinkle_cad.strip.closed_strip import closed_line
+from wrinkle_cad.strip.convexity import validity_matrix
 from wrinkle_cad.strip.validity_price import thinned_rail
 
 
@@ -96,6 +97,33 @@ def test_at_least_as_many_bridges_are_valid_as_in_any_strip_cut_open() -> None:
                 *(np.concatenate((rail, rail[:1])) for rail in rails), price=None, planarity=1e-6
             )
             assert found.counted_invalid_count <= opened.counted_invalid_count + 1
+
+
+@pytest.mark.parametrize(
+    ("m", "n", "seed"),
+    [
+        (18, 24, 3),
+        *(pytest.param(60, 80, seed, marks=pytest.mark.slow) for seed in (3, 4, 5)),
+        pytest.param(180, 240, 3, marks=pytest.mark.slow),
+    ],
+)
+def test_no_noisy_strip_cut_open_has_more_bridges_that_are_valid_where_it_is_closed(
+    m: int, n: int, seed: int
+) -> None:
+    """Cut open, the first and the last sample have one neighbour; their fans are judged by half."""
+    random = np.random.default_rng(seed)
+    p, q = wavy(m, 50.0, 0.0, 5), wavy(n, 40.0, 60.0, 3)
+    p, q = p + random.normal(0.0, 0.5, p.shape), q + random.normal(0.0, 0.5, q.shape)
+    found = triangulate(p, q, closed=True, price=None)
+    padded = [np.vstack((rail[-1:], rail, rail[:1])) for rail in (p, q)]
+    valid = validity_matrix(*padded, planarity=found.planarity)[1:-1, 1:-1]
+    assert valid[tuple((found.bridges % (m, n)).T)].tolist() == found.valid.tolist()
+    # Every closed strip has a bridge from sample 0 of P, so these are all seams.
+    for j in range(n):
+        turned = np.roll(q, -j, axis=0)
+        opened = triangulate(*(np.vstack((rail, rail[:1])) for rail in (p, turned)), price=None)
+        judged = valid[tuple(((opened.bridges[:-1] + np.array((0, j))) % (m, n)).T)]
+        assert found.valid[:-1].sum() >= judged.sum()
 
 
 def test_the_price_of_long_closed_strips_is_measured_on_thinned_ones() -> None:

@@ -9,12 +9,17 @@ import pytest
 
 from tests.wrinkle.shop_families import Family, families
 from wrinkle_cad import WrinkleStrip
+from wrinkle_cad.cad.kernel.measures import face_areas
 from wrinkle_cad.cad.kernel.topology import faces_of
 from wrinkle_cad.cad.rail.closed_starts import started_at
 from wrinkle_cad.cad.rail.directrix import make_directrix
 
 FAMILIES = families()
 NAMES = [family.name for family in FAMILIES]
+SOME_SMOOTH = [
+    family if family.name in ("cone", "hopper") else pytest.param(family, marks=pytest.mark.slow)
+    for family in FAMILIES
+]
 PLANES_AND_CONES = {"square to round": 8, "rectangle to round": 8, "hopper": 4}
 
 
@@ -57,6 +62,15 @@ def assert_same_from_starts(family: Family, count: int) -> None:
 @pytest.mark.parametrize("family", FAMILIES[::5], ids=NAMES[::5])
 def test_a_duct_does_not_remember_where_its_rails_began(family: Family) -> None:
     assert_same_from_starts(family, 1)
+
+
+@pytest.mark.parametrize("family", SOME_SMOOTH, ids=NAMES)
+def test_a_duct_of_smooth_faces_has_its_area_to_the_eighth_digit(family: Family) -> None:
+    strip = WrinkleStrip(family.p, family.q, tolerance=0.02, surface="smooth")
+    faces = faces_of(strip.topods_shell())
+    # The kernel's own integral is off by up to 1e-4 here.
+    area = sum(face_areas(faces, relative_error=1e-12))
+    assert area == pytest.approx(family.area, rel=1e-8)
 
 
 @pytest.mark.slow
