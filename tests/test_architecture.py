@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import re
 import subprocess
 import sys
 from collections.abc import Iterator
@@ -242,3 +243,15 @@ def test_every_public_name_can_be_had() -> None:
 
     for name in wrinkle_cad.__all__:
         assert getattr(wrinkle_cad, name) is not None
+
+
+def test_each_clause_that_catches_everything_says_why() -> None:
+    bare = []
+    for path in sorted(PACKAGE.rglob("*.py")):
+        lines = path.read_text().splitlines()
+        for number, line in enumerate(lines):
+            if re.match(r"\s*except( Exception| BaseException|:)", line):
+                around = (lines[number - 1], lines[number + 1])
+                if not any(each.strip().startswith("#") for each in around):
+                    bare.append(f"{path.name}:{number + 1}")
+    assert not bare

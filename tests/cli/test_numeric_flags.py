@@ -103,6 +103,63 @@ def test_an_odd_limit_is_one_sentence(
     assert not list(tmp_path.iterdir())
 
 
+def commands_with(flag: str) -> list[str]:
+    """The commands that have a flag."""
+    parser = command_line()
+    (commands,) = (each for each in parser._actions if isinstance(each, argparse._SubParsersAction))
+    return [name for name, own in commands.choices.items() if flag in own._option_string_actions]
+
+
+def command_line() -> argparse.ArgumentParser:
+    """The parser of the whole command line, as `main` makes it."""
+    made: list[argparse.ArgumentParser] = []
+    real = argparse.ArgumentParser.parse_args
+
+    def kept(parser: argparse.ArgumentParser, *_: object) -> argparse.Namespace:
+        made.append(parser)
+        raise KeyboardInterrupt
+
+    argparse.ArgumentParser.parse_args = kept  # type: ignore[method-assign, assignment]
+    try:
+        with pytest.raises(KeyboardInterrupt):
+            main([])
+    finally:
+        argparse.ArgumentParser.parse_args = real  # type: ignore[method-assign]
+    return made[0]
+
+
+def test_every_number_of_every_command_is_in_one_of_these_tables() -> None:
+    parser = command_line()
+    (commands,) = (each for each in parser._actions if isinstance(each, argparse._SubParsersAction))
+    known = {str(field.flag) for field in numeric_options()} | {"--timeout", "--memory"}
+    for name, own in commands.choices.items():
+        for action in own._actions:
+            is_number = getattr(action.type, "__name__", "") in ("_number", "_whole_number")
+            is_number |= action.type in (int, float)
+            flags = set(action.option_strings)
+            assert not is_number or flags & (known | {"--workers"}), (name, flags)
+
+
+@pytest.mark.parametrize("flag", ["--timeout", "--memory"])
+@pytest.mark.parametrize("command", ["run", "inspect", "check", "compare"])
+def test_an_odd_limit_of_one_file_is_one_sentence(
+    command: str, flag: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert {"run", "inspect", "check", "compare", "batch"} == set(commands_with(flag))
+    for odd in ODD:
+        out = ["-o", str(tmp_path)] if command in ("run", "compare") else []
+        try:
+            code = main([command, str(EXAMPLE), *out, f"{flag}={odd}"])
+        except SystemExit as error:
+            code = int(str(error.code))
+        said = capsys.readouterr().err.splitlines()
+        assert code in (1, 2), odd
+        assert flag in said[-1], said
+        assert len(said[-1]) < 300
+        assert "defect" not in said[-1]
+    assert not list(tmp_path.iterdir())
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("odd", ODD, ids=lambda odd: odd[:6] or "nothing")
 @pytest.mark.parametrize("field", numeric_options(), ids=lambda field: field.name)

@@ -21,6 +21,7 @@ from pathlib import Path
 
 import psutil
 
+from tests.fuzz.forked import Ended, ended_files, print_ended, warm_up
 from tests.fuzz.mutations import mutate
 from tests.fuzz.structure import restructure
 from wrinkle_cad.batch.folder.conversion import convert
@@ -47,6 +48,8 @@ class Figures:
 
     files: int = 0
     seconds: float = 0.0
+    cpu_s: float = 0.0
+    """CPU time of all files together, where it is known."""
     done: int = 0
     failures: Counter[str] = field(default_factory=Counter)
     """By class of error."""
@@ -58,7 +61,8 @@ class Figures:
     def __str__(self) -> str:
         kinds = ", ".join(f"{count} {name}" for name, count in self.failures.most_common())
         return (
-            f"{self.files} files in {self.seconds:.0f} s: {self.done} done, {kinds}; slowest"
+            f"{self.files} files in {self.seconds:.0f} s ({self.cpu_s:.0f} s of CPU time):"
+            f" {self.done} done, {kinds}; slowest"
             f" {self.longest:.1f} s; {len(self.bugs)} bugs"
         )
 
@@ -91,22 +95,7 @@ def run(
 ) -> tuple[Figures, list[Record]]:
     """Makes damaged files in a folder, runs them all, and judges what came of it."""
     inputs, outputs = folder / "in", folder / "out"
-    inputs.mkdir()
-    chance = random.Random(seed)
-    contents = [path.read_bytes() for path in sources]
-    for number in range(count):
-        pick = chance.randrange(len(contents))
-        name = f"{number:05d}-{sources[pick].stem}.step"
-        damaged = (
-            restructure(contents[pick], chance.choice(contents), chance)
-            if is_structured
-            else mutate(contents[pick], chance)
-        )
-        (inputs / name).write_bytes(damaged)
-        settings = sources[pick].parent / "job.toml"
-        if is_structured and settings.is_file():
-            # With its waves an upper is carved and stitched, too.
-            shutil.copy(settings, inputs / f"{Path(name).stem}.job.toml")
+    make_files(inputs, count, seed, sources, is_structured=is_structured)
     figures = Figures(files=count)
     records: list[Record] = []
 
@@ -125,6 +114,60 @@ def run(
         figures.bugs.append(f"{len(records)} outcomes of {count} files")
     check_surroundings(folder, records, figures)
     return figures, records
+
+
+def make_files(
+    inputs: Path, count: int, seed: int, sources: Sequence[Path], *, is_structured: bool
+) -> list[Path]:
+    """Writes damaged or changed files into a new folder."""
+    inputs.mkdir()
+    chance = random.Random(seed)
+    contents = [path.read_bytes() for path in sources]
+    made = []
+    for number in range(count):
+        pick = chance.randrange(len(contents))
+        name = f"{number:05d}-{sources[pick].stem}.step"
+        damaged = (
+            restructure(contents[pick], chance.choice(contents), chance)
+            if is_structured
+            else mutate(contents[pick], chance)
+        )
+        (inputs / name).write_bytes(damaged)
+        made.append(inputs / name)
+        settings = sources[pick].parent / "job.toml"
+        if is_structured and settings.is_file():
+            # With its waves an upper is carved and stitched, too.
+            shutil.copy(settings, inputs / f"{Path(name).stem}.job.toml")
+    return made
+
+
+def run_forked(
+    folder: Path,
+    count: int,
+    seed: int,
+    sources: Sequence[Path],
+    *,
+    is_structured: bool = False,
+    workers: int = 2,
+) -> tuple[Figures, list[Ended]]:
+    """As `run`, but each file in a child of this process, with a limit of its own CPU time."""
+    made = make_files(folder / "in", count, seed, sources, is_structured=is_structured)
+    for source in dict.fromkeys(sources):
+        if source.is_relative_to(EXAMPLES):
+            warm_up(source, folder / "warm")
+    start = time.monotonic()
+    ended = list(ended_files(made, folder / "out", at_a_time=workers))
+    figures = Figures(files=count, seconds=time.monotonic() - start)
+    figures.cpu_s = sum(each.cpu_s for each in ended)
+    figures.longest = max(each.cpu_s for each in ended)
+    figures.done = sum(not each.error for each in ended)
+    figures.failures = Counter(each.error for each in ended if each.error)
+    figures.bugs = [f"{each.name}: {each.bug}" for each in ended if each.bug]
+    for path, _ in leftovers(folder / "out"):
+        # A child that is killed leaves what its next start would clear.
+        if not any(each.bug and Path(each.name).stem in path.parts for each in ended):
+            figures.bugs.append(f"left behind: {path.name}")
+    return figures, ended
 
 
 def judge(record: Record, figures: Figures, timeout_s: float) -> None:
@@ -169,7 +212,10 @@ def main() -> int:
     parser.add_argument("--keep", type=Path)
     parser.add_argument("--example", default="", help="damage this example only")
     parser.add_argument("--structured", action="store_true", help="change entities, not bytes")
+    parser.add_argument("--forked", action="store_true", help="in children, CPU time limited")
     given = parser.parse_args()
+    if given.forked:
+        return _main_forked(given)
     with tempfile.TemporaryDirectory() as name:
         figures, records = run(
             Path(name),
@@ -189,6 +235,26 @@ def main() -> int:
                 if is_crash or record.message.startswith("An internal error"):
                     shutil.copy(Path(name, "in", record.input), given.keep)
                     sys.stdout.write(f"{record.input}: {record.message}\n")
+    return 1 if figures.bugs else 0
+
+
+def _main_forked(given: argparse.Namespace) -> int:
+    with tempfile.TemporaryDirectory() as name:
+        figures, ended = run_forked(
+            Path(name),
+            given.count,
+            given.seed,
+            weighted(originals([EXAMPLES / given.example]), originals(given.folders)),
+            is_structured=given.structured,
+            workers=given.workers,
+        )
+        print_ended(ended)
+        sys.stdout.write(f"{figures}\n")
+        if given.keep is not None:
+            given.keep.mkdir(parents=True, exist_ok=True)
+            for each in ended:
+                if each.bug:
+                    shutil.copy(Path(name, "in", each.name), given.keep)
     return 1 if figures.bugs else 0
 
 

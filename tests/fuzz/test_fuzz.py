@@ -15,6 +15,7 @@ from tests.fuzz.runner import (
     judge,
     originals,
     run,
+    run_forked,
     weighted,
 )
 from wrinkle_cad.batch.folder.manifest import Record
@@ -52,7 +53,7 @@ def test_damaged_files_end_as_done_or_as_one_line(
 def test_2000_damaged_files_end_as_done_or_as_one_line(
     tmp_path: Path, sources: list[Path], record_property: pytest.RecordProperty
 ) -> None:
-    figures, _ = run(tmp_path, 2000, 2, sources, timeout_s=30.0)
+    figures, _ = run_forked(tmp_path, 2000, 2, sources)
     record_property("figures", str(figures))
     assert not figures.bugs
     assert figures.done + figures.failures.total() == 2000

@@ -1,16 +1,20 @@
 from __future__ import annotations
 
 import json
+import os
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
 
 from wrinkle_cad.errors import ExportError, JobError
+from wrinkle_cad.files.staging import open_staging, release_staging
 from wrinkle_cad.job.job import Job
 from wrinkle_cad.job.outputs import (
     PAGE_MARK,
     SCHEMA,
     check_outputs_are_ours,
+    clear_killed,
     hashes_of,
     output_paths,
     outputs_together,
@@ -130,3 +134,50 @@ def test_what_an_earlier_run_made_and_this_one_does_not_goes_unless_it_was_chang
     write("dxf", "sheet1.dxf")
     names = sorted(path.name for path in job.output_dir.iterdir())
     assert names == ["a.dxf", "a.json", "a.sheet1.dxf", "a.sheet3.dxf", "a.sheet4.dxf"]
+
+
+@pytest.mark.parametrize("is_first", [True, False])
+@pytest.mark.parametrize("moment", range(1, 9))
+def test_a_run_that_is_killed_while_files_get_their_names_is_finished_by_the_next(
+    job: Job, moment: int, is_first: bool
+) -> None:
+    if not is_first:
+        write_all(job, "first")
+    child = os.fork()
+    if not child:
+        calls = 0
+
+        def counted(real: Callable[..., object]) -> Callable[..., object]:
+            def call(*arguments: object, **keywords: object) -> object:
+                nonlocal calls
+                calls += 1
+                if calls == moment:
+                    os._exit(0)
+                return real(*arguments, **keywords)
+
+            return call
+
+        for name in ("link", "replace", "rename", "unlink"):
+            setattr(os, name, counted(getattr(os, name)))
+        write_all(job, "second")
+        os._exit(0)
+    os.waitpid(child, 0)
+    clear_killed(job.output_dir)
+    assert not [path for path in job.output_dir.iterdir() if path.name.startswith(".")]
+    assert (job.output_dir / "shoe.step").read_text() == "second"
+    check_outputs_are_ours(job, KINDS)
+    write_all(job, "third")
+    assert (job.output_dir / "shoe.step").read_text() == "third"
+
+
+def test_what_is_planted_as_half_moved_replaces_nothing_foreign(job: Job, tmp_path: Path) -> None:
+    write_all(job, "first")
+    (job.output_dir / "mine.step").write_text("mine")
+    planted = open_staging(job.output_dir)
+    for name, content in (("mine.step", "new"), ("shoe.step", "new"), (".moving", "mine")):
+        (planted / name).write_text(content)
+    release_staging(planted)
+    clear_killed(job.output_dir)
+    assert (job.output_dir / "mine.step").read_text() == "mine"
+    assert (job.output_dir / "shoe.step").read_text() == "first"
+    assert not planted.exists()

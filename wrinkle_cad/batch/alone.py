@@ -16,9 +16,9 @@ from wrinkle_cad.batch.executor import make_pool, run_tasks
 from wrinkle_cad.batch.workers.pool import Finished, Phase, Pool
 from wrinkle_cad.batch.workers.task import JobFunction, Task
 from wrinkle_cad.errors import JobError
-from wrinkle_cad.files.staging import clear_abandoned
 from wrinkle_cad.job.job import Job
 from wrinkle_cad.job.outcome import JobDone, JobFailed, Progress
+from wrinkle_cad.job.outputs import clear_killed
 from wrinkle_cad.job.phases import PhaseClock
 from wrinkle_cad.job.workflow import run_job
 
@@ -54,12 +54,12 @@ def run_alone(
         return run_job(job, progress=progress)
     pool = make_pool(executor=None, workers=1, timeout=timeout, memory=memory)
     here = replace(job, input=job.input.absolute(), output_dir=job.output_dir.absolute())
-    clear_abandoned(here.output_dir)
+    clear_killed(here.output_dir)
     try:
         outcome = _outcome_of(pool, Task(job=here, job_function=job_function), progress)
         return _as_asked(job, outcome)
     finally:
-        clear_abandoned(here.output_dir)
+        clear_killed(here.output_dir)
 
 
 def answer_alone(

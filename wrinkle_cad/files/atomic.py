@@ -75,6 +75,7 @@ def write_aside(path: Path, content: bytes) -> Path:
             stream.flush()
             os.fsync(stream.fileno())
     except BaseException:
+        # Ctrl-C leaves half a file as surely as a full disk does.
         part.unlink(missing_ok=True)
         raise
     return part
@@ -127,9 +128,11 @@ def replace_together(
             else:
                 part.replace(final)
     except Exception:
+        # Of the question whether a file may be replaced, too, which is the caller's.
         _undo(todo, kept)
         raise
     except BaseException:
+        # Ctrl-C is no fault of the files.
         if not is_resumed:
             _undo(todo, kept)
         raise

@@ -101,6 +101,7 @@ def within(seconds: float, work: Callable[[Callable[[], None]], T], what: str) -
         try:
             results.append(work(beat))
         except BaseException as error:
+            # Nobody sees what ends a thread: whoever waits for it raises it.
             errors.append(error)
         ended.set()
 

@@ -148,10 +148,17 @@ def leftovers(folder: Path, *, below: bool = True) -> Iterator[tuple[Path, str |
             return
 
 
-def clear_abandoned(folder: Path) -> None:
-    """Removes uncommitted hidden folders that killed processes left right in a folder."""
+def clear_abandoned(folder: Path, finish: Callable[[Path], None] | None = None) -> None:
+    """Removes uncommitted hidden folders that killed processes left right in a folder.
+
+    Args:
+        folder: where outputs go.
+        finish: called with each of them before it goes.
+    """
     for path, record in list(leftovers(folder, below=False)):
         if record is None:
+            if finish is not None:
+                finish(path)
             discard_staging(path)
 
 

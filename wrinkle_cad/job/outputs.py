@@ -11,7 +11,7 @@ from typing import Any, Final
 from wrinkle_cad.errors import ExportError, JobError
 from wrinkle_cad.files.atomic import replace_together
 from wrinkle_cad.files.regular import hash_regular, is_regular, read_regular
-from wrinkle_cad.files.staging import discard_staging, open_staging
+from wrinkle_cad.files.staging import clear_abandoned, discard_staging, open_staging, staged_files
 
 from .job import Job
 
@@ -22,6 +22,11 @@ PAGE_MARK: Final = '<meta name="generator" content="wrinkle_cad'
 _LOOKED_AT_LIMIT: Final = 64 * 2**20
 """Bytes; the largest file that is read to tell whether it is one of our JSON files or pages."""
 _SCHEMAS: Final = "wrinkle_cad/"
+_STEM_LIMIT: Final = 1000
+"""Bytes."""
+_MOVING_NAME: Final = ".moving"
+"""Stands beside outputs that are all written, as soon as some may have their final names; holds
+their stem."""
 
 
 def output_paths(job: Job, kinds: tuple[str, ...]) -> dict[str, Path]:
@@ -92,8 +97,10 @@ def outputs_together(job: Job, kinds: tuple[str, ...]) -> Iterator[dict[str, Pat
         written = {kind: aside / f"{job.name}.{kind}" for kind in kinds}
         yield written
         finals = output_paths(job, kinds)
-        pairs = [(written[kind], finals[kind]) for kind in kinds]
+        # The JSON goes last: while it is the old one, it tells whose the other old ones are.
+        pairs = [(written[kind], finals[kind]) for kind in sorted(kinds, key="json".__eq__)]
         is_ours, stale = ownership_of(job.output_dir, job.name), _no_longer_made(job, finals)
+        (aside / _MOVING_NAME).write_text(job.name, encoding="utf-8")
         try:
             # Asked again: a file may have appeared while the job ran.
             replace_together(pairs, may_replace=is_ours)
@@ -110,6 +117,32 @@ def outputs_together(job: Job, kinds: tuple[str, ...]) -> Iterator[dict[str, Pat
                 path.unlink(missing_ok=True)
     finally:
         discard_staging(aside)
+
+
+def clear_killed(folder: Path) -> None:
+    """Removes hidden folders that killed runs left right in a folder of outputs.
+
+    Outputs of which some had their final names already get the others too, where these are free or
+    ours: a set is never left in halves.
+    """
+    clear_abandoned(folder, finish_moving)
+
+
+def finish_moving(aside: Path) -> None:
+    """Gives the outputs that a killed run had begun to move their final names, where it may."""
+    try:
+        stem = read_regular(aside / _MOVING_NAME, size_limit=_STEM_LIMIT).decode("utf-8")
+        left = [path for path in staged_files(aside) if path.name.startswith(f"{stem}.")]
+        left.sort(key=lambda path: path.suffix == ".json")
+        pairs = [(path, aside.parent / path.name) for path in left if is_regular(path)]
+        is_listed = ownership_of(aside.parent, stem)
+        # A file may have both names, if it was killed between getting one and losing the other.
+        replace_together(
+            pairs, may_replace=lambda path: is_listed(path) or path.samefile(aside / path.name)
+        )
+    except (OSError, UnicodeDecodeError):
+        # It had not begun, or somebody took a name meanwhile: what has its name keeps it.
+        return
 
 
 def _no_longer_made(job: Job, finals: Mapping[str, Path]) -> list[Path]:

@@ -167,6 +167,7 @@ class _Conversion:
             self._work()
             self._nest()
         except BaseException:
+            # Ctrl-C, a listener's error or a defect: the folder is left in order all the same.
             self._give_up()
             raise
         records, summary = self._state(is_over=True)
@@ -230,6 +231,8 @@ class _Conversion:
             self._refuse(key, "read", type(error).__name__, message)
             return None
         except Exception as error:
+            # What a stranger's name, settings or manifest can raise is not listed anywhere, and
+            # it is one file's trouble.
             self._refuse(key, "plan", type(error).__name__, trouble_of(entry.source, error))
             return None
         if done is not None:

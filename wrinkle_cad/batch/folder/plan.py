@@ -122,6 +122,7 @@ def _plan_one(
         merged = {**own, **layers.flags, "name": default_name, "output_dir": target}
         job = make_job(source.path, merged)
     except Exception as error:
+        # Settings are a stranger's, of any form: whatever they raise is one file's trouble.
         refusal = refusal or _line_of(error, source)
         job = Job(input=source.path, name=default_name, output_dir=target)
     if not refusal and folder == PurePosixPath() and default_name == Path(PAGE_NAME).stem:

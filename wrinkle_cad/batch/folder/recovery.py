@@ -12,6 +12,7 @@ from wrinkle_cad.files.staging import (
     move_into_place,
     staged_files,
 )
+from wrinkle_cad.job.outputs import finish_moving
 
 from .manifest import Manifest, Record, record_from_line
 from .ownership import may_replace
@@ -33,6 +34,7 @@ def recover(folder: Path, manifest: Manifest, tell: Callable[[str], None]) -> No
     """
     for path, line in list(leftovers(folder)):
         if line is None:
+            finish_moving(path)
             discard_staging(path)
             tell("removed what an earlier batch left unfinished")
         elif not staged_files(path):

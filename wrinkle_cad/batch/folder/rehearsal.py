@@ -54,6 +54,7 @@ def rehearse(
             yield entry, f"{entry.source.label} cannot be read ({error.strerror}). Check the file."
             continue
         except Exception as error:
+            # As in the batch itself: one file's trouble, whatever it is.
             yield entry, trouble_of(entry.source, error)
             continue
         yield entry, DONE_BEFORE if is_done else TO_DO

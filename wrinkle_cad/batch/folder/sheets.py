@@ -132,6 +132,7 @@ class BatchSheets:
                 job, staging, result, base=base, known=known, on_commit=self._manifest.append
             )
         except BaseException:
+            # Ctrl-C, too, must leave no hidden folder.
             discard_staging(staging)
             raise
         if isinstance(outcome, JobFailed):

@@ -54,6 +54,9 @@ def open_dxf(path: Path) -> OpenedDxf:
     del content
     try:
         document, auditor = _loaded(path, may_mend=is_small and not is_binary)
+    except MemoryError:
+        # That is the limit's, not the file's: whoever set the limit says so.
+        raise
     # ezdxf raises some twenty classes of errors, bare ones of Python among them, from broken files.
     except Exception as error:
         raise InputError(
@@ -90,6 +93,7 @@ def _loaded(path: Path, *, may_mend: bool) -> tuple[DxfDocument, Any]:
         if not (may_mend and (auditor.errors or auditor.fixes)):
             return document, auditor
     except Exception:
+        # Of any class, see above; the reader that mends meets the same and raises it again.
         if not may_mend:
             raise
     document, auditor = recover.readfile(path)

@@ -92,7 +92,8 @@ def read_dxf(path: Path) -> DxfContent:
     try:
         with _collector_at_rest(), without_ezdxf_log():
             return _content(path)
-    except InputError:
+    except (InputError, MemoryError):
+        # What is told already, and what is the memory limit's.
         raise
     # A table that contradicts itself shows only when ezdxf is asked for what is in it.
     except Exception as error:
@@ -135,7 +136,7 @@ def _content(path: Path) -> DxfContent:
                 curve_points += _collect(entity, space, lines, marks, unusable)
                 if curve_points > limits.MOST_CURVE_POINTS:
                     raise InputError(_too_curved(path.name))
-    except InputError:
+    except (InputError, MemoryError):
         raise
     # ezdxf meets contradictions inside entities only here, with errors of any class.
     except Exception as error:
