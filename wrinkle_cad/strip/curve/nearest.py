@@ -17,8 +17,8 @@ from wrinkle_cad.strip.compiled import compiled
 Floats = NDArray[np.float64]
 Indices = NDArray[np.int64]
 
-BLOCK: Final = 16
-"""So many segments share one enclosing ball: far ones are passed over together."""
+BLOCK: Final = 8
+"""So many segments have one chord; stretches that are far from theirs are passed over together."""
 TIE: Final = 1e-9
 """Distances closer than this share of themselves are equal but for round-off."""
 
@@ -45,7 +45,8 @@ def nearest_on_polyline(points: ArrayLike, line: ArrayLike) -> NearestPoints:
         points: (k, 3) float64, mm.
         line: (l, 3) float64, mm; l at least 2. Segments may be points.
 
-    O(k l) time at worst; blocks of segments that are too far are passed over.
+    O((k + l) log l) time where each point is clearly nearer to some stretch than to the others; at
+    worst, as from the middle of a circle to it, O(k l).
 
     Example:
         >>> found = nearest_on_polyline([[1.0, 2.0, 0.0]], [[0.0, 0, 0], [4.0, 0, 0], [4.0, 9, 0]])
@@ -65,57 +66,82 @@ def _nearest(points: Floats, line: Floats) -> tuple[Indices, Floats, Floats]:
     count = points.shape[0]
     segment = np.zeros(count, dtype=np.int64)
     share, distance = np.zeros(count), np.zeros(count)
-    balls = _balls(line)
+    ends, widths = _stretches(line)
+    leaves, segments = ends.shape[0] // 2, line.shape[0] - 1
     place = np.zeros(3)
     k = 0
     for i in range(count):
-        along, place[0], place[1], place[2], least = _foot(points[i], line, k)
-        for block in range(balls.shape[0]):
-            x = points[i, 0] - balls[block, 0]
-            y = points[i, 1] - balls[block, 1]
-            z = points[i, 2] - balls[block, 2]
-            reach = least * (1.0 + TIE) + balls[block, 3]
-            if x * x + y * y + z * z > reach * reach:
+        along, place[0], place[1], place[2], least = _foot(points[i], line, k, k + 1)
+        block = 0
+        while block * BLOCK < segments:
+            node, size = leaves + block, 1
+            if _is_far(points[i], line, ends[node], widths[node], least):
+                # Pass over all that is far together with this block.
+                while node > 1 and node % 2 == 0:
+                    node //= 2
+                    if not _is_far(points[i], line, ends[node], widths[node], least):
+                        break
+                    size *= 2
+                block += size
                 continue
-            for j in range(block * BLOCK, min((block + 1) * BLOCK, line.shape[0] - 1)):
-                there, x, y, z, away = _foot(points[i], line, j)
+            for j in range(ends[node, 0], ends[node, 1]):
+                there, x, y, z, away = _foot(points[i], line, j, j + 1)
                 slack = TIE * (least + away)
                 if away > least + slack:
                     continue
                 if away < least - slack or _comes_first(x, y, z, place, slack):
                     k, along, least = j, there, away
                     place[0], place[1], place[2] = x, y, z
+            block += 1
         segment[i], share[i], distance[i] = k, along, least
     return segment, share, distance
 
 
 @compiled
-def _balls(line: Floats) -> Floats:
-    """(b, 4) centre and radius: balls around blocks of segments."""
-    segments = line.shape[0] - 1
-    balls = np.zeros(((segments + BLOCK - 1) // BLOCK, 4))
-    for block in range(balls.shape[0]):
-        first, last = block * BLOCK, min((block + 1) * BLOCK, segments)
-        square = 0.0
-        for axis in range(3):
-            low = high = line[first, axis]
-            for k in range(first, last + 1):
-                low, high = min(low, line[k, axis]), max(high, line[k, axis])
-            balls[block, axis] = 0.5 * (low + high)
-            square += 0.25 * (high - low) * (high - low)
-        balls[block, 3] = np.sqrt(square) * (1.0 + TIE)
-    return balls
+def _stretches(line: Floats) -> tuple[Indices, Floats]:
+    """Blocks of segments, and what they join to: node k + i is block i, node j is 2 j and 2 j + 1.
+
+    Returns:
+        (2 k, 2) first and last vertex of each; (2 k,) mm: how far it is off its chord.
+    """
+    segments, leaves = line.shape[0] - 1, 1
+    while leaves * BLOCK < segments:
+        leaves *= 2
+    ends, widths = np.zeros((2 * leaves, 2), dtype=np.int64), np.zeros(2 * leaves)
+    for node in range(2 * leaves - 1, 0, -1):
+        if node >= leaves:
+            ends[node, 0] = min(segments, (node - leaves) * BLOCK)
+            ends[node, 1] = min(segments, (node - leaves + 1) * BLOCK)
+        else:
+            ends[node, 0], ends[node, 1] = ends[2 * node, 0], ends[2 * node + 1, 1]
+        for k in range(ends[node, 0] + 1, ends[node, 1]):
+            _, _, _, _, away = _foot(line[k], line, ends[node, 0], ends[node, 1])
+            widths[node] = max(widths[node], away)
+    return ends, widths
 
 
 @compiled
-def _foot(point: Floats, line: Floats, k: int) -> tuple[float, float, float, float, float]:
-    """Share of segment k that lies before its nearest point, that point, and its distance."""
+def _is_far(point: Floats, line: Floats, ends: Indices, width: float, least: float) -> bool:
+    """Whether all of a stretch is further away, by more than what counts as equal."""
+    _, _, _, _, away = _foot(point, line, ends[0], ends[1])
+    return bool(away * (1.0 - TIE) > least * (1.0 + 4.0 * TIE) + width * (1.0 + TIE))
+
+
+@compiled
+def _foot(
+    point: Floats, line: Floats, first: int, last: int
+) -> tuple[float, float, float, float, float]:
+    """Share of a chord that lies before its nearest point, that point, and its distance."""
     ux, uy, uz = (
-        line[k + 1, 0] - line[k, 0],
-        line[k + 1, 1] - line[k, 1],
-        line[k + 1, 2] - line[k, 2],
+        line[last, 0] - line[first, 0],
+        line[last, 1] - line[first, 1],
+        line[last, 2] - line[first, 2],
     )
-    vx, vy, vz = point[0] - line[k, 0], point[1] - line[k, 1], point[2] - line[k, 2]
+    vx, vy, vz = (
+        point[0] - line[first, 0],
+        point[1] - line[first, 1],
+        point[2] - line[first, 2],
+    )
     square = ux * ux + uy * uy + uz * uz
     share = 0.0 if square == 0.0 else min(1.0, max(0.0, (ux * vx + uy * vy + uz * vz) / square))
     vx, vy, vz = vx - share * ux, vy - share * uy, vz - share * uz
