@@ -22,7 +22,13 @@ from OCP.TopAbs import TopAbs_OUT, TopAbs_REVERSED
 from OCP.TopoDS import TopoDS_Face, TopoDS_Shape
 
 from wrinkle_cad import settings
-from wrinkle_cad.cad.kernel.topology import faces_of, kind_name, make_vertex
+from wrinkle_cad.cad.kernel.topology import (
+    faces_of,
+    kind_name,
+    make_vertex,
+    vertex_point,
+    vertices_of,
+)
 from wrinkle_cad.errors import InputError
 from wrinkle_cad.strip.portable import norm
 
@@ -57,14 +63,16 @@ class UpperFaces:
         self._surfaces = [ShapeAnalysis_Surface(BRep_Tool.Surface_s(face)) for face in self.faces]
         self._inside = [IntTools_FClass2d(face, settings.CONFUSION) for face in self.faces]
         self._boxes = [_box(face) for face in self.faces]
+        self._corners = np.array([vertex_point(vertex) for vertex in vertices_of(upper)])
 
     def feet(self, points: Floats) -> Feet:
         """Returns the feet of (k, 3) points in mm, which follow each other along a curve."""
         best = np.full(len(points), np.inf)
         owner = np.full(len(points), -1, dtype=np.int64)
         uv = np.zeros((len(points), 2))
+        limit = self._nearest_corner(points)
         for i in range(len(self.faces)):
-            self._try_face(i, points, best, owner, uv)
+            self._try_face(i, points, limit, best, owner, uv)
         found, normals = np.empty_like(points), np.empty_like(points)
         for j, point in enumerate(points):
             if owner[j] < 0:
@@ -82,10 +90,18 @@ class UpperFaces:
                 found.append(i)
         return found
 
+    def _nearest_corner(self, points: Floats) -> Floats:
+        """Returns (k,) mm: the upper is no further away, and what is need not be looked at."""
+        if not len(self._corners):
+            return np.full(len(points), np.inf)
+        apart = [np.sqrt(((self._corners - point) ** 2).sum(axis=1).min()) for point in points]
+        return np.array(apart) + settings.GAP_CROSSED
+
     def _try_face(
         self,
         i: int,
         points: Floats,
+        limit: Floats,
         best: Floats,
         owner: NDArray[np.int64],
         uv: Floats,
@@ -94,7 +110,7 @@ class UpperFaces:
         reach = np.linalg.norm(np.maximum(np.maximum(low - points, points - high), 0.0), axis=1)
         previous: gp_Pnt2d | None = None
         previous_gap = 0.0
-        for j in np.flatnonzero(reach <= best):
+        for j in np.flatnonzero(reach <= np.minimum(best, limit)):
             at = gp_Pnt(*points[j].tolist())
             if previous is None:
                 found = surface.ValueOfUV(at, settings.CONFUSION)
