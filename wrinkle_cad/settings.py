@@ -380,7 +380,7 @@ some 1e-6 mm apart."""
 BAND_FOLD_LIMIT: Final = 2.6
 """rad; a band that turns back on itself by more than this cannot be made or cut."""
 
-EDGE_TOLERANCE_LIMIT: Final = 1e-3
+EDGE_TOLERANCE_LIMIT: Final = 1e-5
 """mm; what the largest edge tolerance of a stitched shell may be where the upper's own is less."""
 
 SEWN_DIRECTLY: Final = 5e-4

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from functools import cache
 
 import numpy as np
@@ -66,58 +65,3 @@ def lens_rail(sign: float) -> TopoDS_Edge:
     angles = np.radians(np.linspace(-60.0, 60.0, len(points)))
     lifted = points + np.outer(sign * 12.0 * np.cos(1.5 * angles), [1.0, 0.0, 0.0])
     return smooth_edge(lifted)
-
-
-@dataclass(frozen=True)
-class Variation:
-    """A wrinkle at random: where it is, how it is turned, how wide, how wavy, how high."""
-
-    rails: tuple[TopoDS_Edge, TopoDS_Edge]
-    margin: float
-    fade: float
-    waves: float
-    height: float
-    phase_deg: tuple[float, float]
-    side: str
-
-    def made(self) -> tuple[Opening, WrinkleStrip, Stitched]:
-        carved = carve(shoe(), *self.rails, margin=self.margin, fade=self.fade)
-        profiles = profile_curves(
-            carved,
-            waves=self.waves,
-            height=self.height,
-            phase_deg=self.phase_deg,
-            fade=self.fade,
-            side=self.side,  # type: ignore[arg-type]
-        )
-        strip = WrinkleStrip(*profiles, name="wrinkle")
-        return carved, strip, stitch(carved, strip)
-
-
-def variation(seed: int) -> Variation:
-    random = np.random.default_rng(seed)
-    width = random.uniform(8.0, 35.0)
-    middle = min(random.uniform(165.0, 225.0), 232.0 - width / 2)
-    # Turned further against each other, narrow strips would cross.
-    skews = random.uniform(-1.0, 1.0, 2) * min(10.0, 0.35 * width)
-    reach = (-random.uniform(30.0, 68.0), random.uniform(30.0, 68.0))
-    apart = random.uniform(-4.0, 4.0, 2)
-    side = ("out", "both", "in")[random.integers(3)]
-    height = random.uniform(0.5, 2.0 if side == "in" else 5.0)
-    return Variation(
-        rails=(
-            vamp_rail(shoe(), middle + width / 2, skew=skews[0], reach_deg=reach),
-            vamp_rail(
-                shoe(),
-                middle - width / 2,
-                skew=skews[1],
-                reach_deg=(reach[0] + apart[0], reach[1] + apart[1]),
-            ),
-        ),
-        margin=height * random.uniform(0.9, 1.6),
-        fade=random.uniform(0.1, 0.5),
-        waves=random.uniform(2.0, 8.0),
-        height=height,
-        phase_deg=(random.uniform(0.0, 360.0), random.uniform(0.0, 360.0)),
-        side=side,
-    )

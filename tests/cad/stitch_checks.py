@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 import trimesh
 from numpy.typing import NDArray
+from OCP.BOPAlgo import BOPAlgo_ArgumentAnalyzer, BOPAlgo_InvalidCurveOnSurface
 from OCP.BRepExtrema import BRepExtrema_DistShapeShape
 from OCP.STEPControl import STEPControl_Reader
 from OCP.TopoDS import TopoDS_Shape
@@ -137,3 +138,33 @@ def freecad_report(freecadcmd: str, paths: list[Path], folder: Path) -> list[str
         [freecadcmd, str(script)], capture_output=True, text=True, timeout=300, check=False
     )
     return [line[7:] for line in done.stdout.splitlines() if line.startswith("JUDGED")]
+
+
+def freecad_boolean_faults(freecadcmd: str, path: Path, folder: Path) -> list[str]:
+    """What FreeCAD's own check of a STEP file for boolean operations finds."""
+    script = folder / "check.py"
+    script.write_text(
+        "import Part\n"
+        "shape = Part.Shape()\n"
+        f"shape.read({str(path)!r})\n"
+        "try:\n"
+        "    shape.check(True)\n"
+        "except ValueError as error:\n"
+        "    print(error)\n"
+        "print('CHECKED', len(shape.Faces))\n"
+    )
+    done = subprocess.run(
+        [freecadcmd, str(script)], capture_output=True, text=True, timeout=1800, check=False
+    )
+    assert "CHECKED" in done.stdout, done.stdout + done.stderr
+    return [line for line in done.stdout.splitlines() if "BOPAlgo" in line]
+
+
+def edges_off_their_faces(shape: TopoDS_Shape) -> int:
+    """How many edges the kernel's check for boolean operations finds off one of their faces."""
+    check = BOPAlgo_ArgumentAnalyzer()
+    check.SetShape1(shape)
+    check.CurveOnSurfaceMode = True
+    check.Perform()
+    found = [item.GetCheckStatus() for item in check.GetCheckResult()]
+    return found.count(BOPAlgo_InvalidCurveOnSurface)

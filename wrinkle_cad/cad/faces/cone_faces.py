@@ -22,6 +22,7 @@ from wrinkle_cad import settings
 from wrinkle_cad.cad.kernel.evaluation import PoleCurve
 from wrinkle_cad.cad.kernel.splines import insert_u_knots, make_curve_2d, make_surface
 
+from .dense_edges import make_dense
 from .face_borders import Border, BorderEdge
 from .on_surface import degenerated_edge, on_ruling, put_on_face
 from .plane_faces import cross_rows, make_wire
@@ -60,6 +61,8 @@ def cone_face(
     insert_u_knots(surface, knots[(knots > first) & (knots < last)], settings.KNOT_GAP)
     builder.MakeFace(face, surface, settings.CONFUSION)
     low, high = (1.0 if not from_apex else 0.0), (1.0 if not to_apex else 0.0)
+    if not (to_apex and from_apex):
+        make_dense(bank.edge)
     put_on_face(bank.edge, _straight(first, last, (first, low), (last, high)), face)
     for border, u, base in ((to_apex, last, shape.poles[-1]), (from_apex, first, shape.poles[0])):
         for item in border:

@@ -12,9 +12,8 @@ from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
-from OCP.BRep import BRep_Builder, BRep_Tool
+from OCP.BRep import BRep_Builder
 from OCP.BRepBuilderAPI import BRepBuilderAPI_MakeEdge
-from OCP.TopLoc import TopLoc_Location
 from OCP.TopoDS import TopoDS_Edge, TopoDS_Face
 from scipy.interpolate import BSpline
 
@@ -23,13 +22,20 @@ from wrinkle_cad.cad.kernel.splines import make_curve, make_curve_2d
 from wrinkle_cad.strip.curve.cubic import cubic_through
 from wrinkle_cad.strip.curve.polyline import arc_lengths
 
-from .face_parameters import FaceParameters, Piece
+from .face_parameters import Curve, FaceParameters, Piece
 from .opening_outline import Side
 
 Floats = NDArray[np.float64]
 
 DRAWN_EDGE_GAP: Final = 2e-6
 """mm; an outline that cannot be drawn on a face this exactly is cut with ribbons instead."""
+
+CURVE_GAP: Final = 8e-8
+"""mm; what the curve in space and the one on the face may differ by: a program that reads the edge
+takes it to lie on the face within its own precision."""
+
+NEAREST_PLACES: Final = 1e-9
+"""mm; a spline takes no points nearer to each other along it."""
 
 HALVINGS: Final = 16
 """How often a stretch of a side is halved, at most, until its curves are exact enough."""
@@ -91,35 +97,53 @@ def _flat_curve(parameters: FaceParameters, line: BSpline, piece: Piece) -> BSpl
 def _edge_over(
     face: TopoDS_Face, parameters: FaceParameters, flat: BSpline, at: Floats
 ) -> TopoDS_Edge | None:
-    """Returns the edge over a curve in parameters, its curve in space as dense as it has to be.
+    """Returns the edge over a curve in parameters."""
+    found = curve_over(lambda at: parameters.points(flat(at)), np.union1d(at, flat.t))
+    return None if found is None else _edge(face, found[0], flat, found[1])
 
-    Points are added where the curve in space is off the surface, and beside such places: a spline
-    through points is off where the surface's own knots bend it.
+
+def curve_over(point_at: Curve, at: Floats) -> tuple[BSpline, float] | None:
+    """Returns a spline that follows a curve on a surface, as dense as it has to be.
+
+    Points are added where it is off the surface, and beside such places: a spline through points is
+    off where the surface's own knots bend it.
+
+    Args:
+        point_at: the curve.
+        at: (k,) parameters to begin with, rising, k at least 4.
+
+    Returns:
+        The spline and by how much in mm it is off: ``CURVE_GAP`` at most, ``DRAWN_EDGE_GAP`` where
+        too many points do not do; None where these do not either.
     """
-    at = np.union1d(at, flat.t)
     for _ in range(HALVINGS):
-        space = BSpline(*cubic_through(at, parameters.points(flat(at))), 3)
+        space = BSpline(*cubic_through(at, point_at(at)), 3)
         between = (at[:-1, None] + np.diff(at)[:, None] * BETWEEN).ravel()
-        apart = np.linalg.norm(parameters.points(flat(between)) - space(between), axis=1)
+        apart = np.linalg.norm(point_at(between) - space(between), axis=1)
         gap = float(apart.max())
-        if gap <= DRAWN_EDGE_GAP:
-            return _edge(face, space, flat, gap)
-        is_off = apart.reshape(-1, len(BETWEEN)).max(axis=1) > 0.5 * DRAWN_EDGE_GAP
+        if gap <= CURVE_GAP:
+            break
+        is_off = apart.reshape(-1, len(BETWEEN)).max(axis=1) > 0.5 * CURVE_GAP
         is_near = is_off.copy()
         is_near[1:] |= is_off[:-1]
         is_near[:-1] |= is_off[1:]
+        is_near &= np.diff(at) > 2.0 * NEAREST_PLACES
+        if not is_near.any():
+            break
         at = np.sort(np.concatenate((at, 0.5 * (at[:-1] + at[1:])[is_near])))
-    return None
+    return (space, gap) if gap <= DRAWN_EDGE_GAP else None
 
 
 def _edge(face: TopoDS_Face, space: BSpline, flat: BSpline, gap: float) -> TopoDS_Edge:
-    edge = BRepBuilderAPI_MakeEdge(make_curve(space.c, *_knots(space), 3)).Edge()
+    edge = BRepBuilderAPI_MakeEdge(make_curve(space.c, *knots_of(space), 3)).Edge()
     tolerance = max(settings.CONFUSION, 1.5 * gap)
-    curve = make_curve_2d(flat.c, *_knots(flat), 3)
-    BRep_Builder().UpdateEdge(edge, curve, BRep_Tool.Surface_s(face), TopLoc_Location(), tolerance)
+    curve = make_curve_2d(flat.c, *knots_of(flat), 3)
+    # The face's own surface and placement: a copy of the surface is unknown to the kernel.
+    BRep_Builder().UpdateEdge(edge, curve, face, tolerance)
     return edge
 
 
-def _knots(spline: BSpline) -> tuple[Floats, NDArray[np.int64]]:
+def knots_of(spline: BSpline) -> tuple[Floats, NDArray[np.int64]]:
+    """Returns (l,) distinct knots and how often each occurs."""
     knots, counts = np.unique(spline.t, return_counts=True)
     return knots, counts

@@ -12,6 +12,7 @@ from OCP.Geom import Geom_BSplineCurve
 from OCP.TopAbs import TopAbs_REVERSED
 from OCP.TopoDS import TopoDS_Face, TopoDS_Shape, TopoDS_Shell
 
+from wrinkle_cad.cad.faces.dense_edges import is_sliver, make_dense
 from wrinkle_cad.cad.faces.face_borders import sub_curve
 from wrinkle_cad.cad.kernel.curves import edge_middle
 from wrinkle_cad.cad.kernel.shape_index import ShapeIndex
@@ -106,7 +107,7 @@ def sew(faces: Sequence[TopoDS_Face], tolerance: float) -> Sewn:
 
 
 def _trim_curves(shell: TopoDS_Shell, given: Sequence[TopoDS_Face]) -> None:
-    """Gives each edge that sewing made the part of its curve that it uses.
+    """Gives each edge that sewing made the part of its curve that it uses, dense beside an apex.
 
     Sewing cuts an edge into many on one and the same curve, and a STEP file holds it for each.
     """
@@ -125,6 +126,11 @@ def _trim_curves(shell: TopoDS_Shell, given: Sequence[TopoDS_Face]) -> None:
             part = sub_curve(curve, first, last)
             BRep_Builder().UpdateEdge(edge, part, BRep_Tool.Tolerance_s(edge))
             BRep_Builder().Range(edge, first, last)
+    for face in faces_of(shell):
+        if is_sliver(face):
+            for edge in edges_of(face):
+                if not BRep_Tool.Degenerated_s(edge):
+                    make_dense(edge)
 
 
 def _check_oriented(shell: TopoDS_Shell) -> None:

@@ -19,6 +19,7 @@ from wrinkle_cad.cad.kernel.topology import as_face
 from wrinkle_cad.cad.kernel.versions import shape_list
 from wrinkle_cad.errors import CadError
 
+from .cut_tolerances import settle_tolerances
 from .drawn_edges import drawn_edges
 from .opening_outline import Side
 from .opening_plan import OpeningPlan
@@ -66,7 +67,10 @@ def split_faces(faces: UpperFaces, plans: Sequence[OpeningPlan]) -> Split:
         for edge in drawn:
             for part in list(splitter.Modified(edge)) or [edge]:
                 section.add(part)
-    return sorted_pieces(pieces, section, plans)
+    split = sorted_pieces(pieces, section, plans)
+    with kernel_step(STEP):
+        settle_tolerances(faces.faces, split)
+    return split
 
 
 def _drawn(
