@@ -168,3 +168,14 @@ def test_a_name_or_an_input_that_is_no_text_is_one_sentence(tmp_path: Path, line
     (tmp_path / "a.job.toml").write_text(line)
     (entry,) = plan_batch(find_sources([str(tmp_path)], tmp_path / "out").files, tmp_path / "out")
     assert entry.refusal.startswith(f"{line.split()[0]} cannot be ")
+
+
+def test_a_name_that_settings_choose_yields_to_the_file_that_is_called_so(tmp_path: Path) -> None:
+    for name in ("a", "b"):
+        (tmp_path / f"{name}.step").write_text("1")
+    (tmp_path / "a.job.toml").write_text('name = "b"')
+    first, second = plan_batch(
+        find_sources([str(tmp_path)], tmp_path / "out").files, tmp_path / "out"
+    )
+    assert "b.step would be called b too" in first.refusal
+    assert (second.key, second.refusal) == ("b", "")

@@ -72,7 +72,7 @@ def plan_batch(
     settings are those in ``STEM.job.toml`` beside it, then those in ``job.toml`` in its folder
     (unless that names another file as its ``input``). The folder of the
     outputs is always the batch's. Of files whose outputs would have the same name, in the order
-    given, only the first is done.
+    given, only the first is done; one that has the name from its own settings comes after others.
 
     Args:
         sources: the inputs.
@@ -90,28 +90,31 @@ def plan_batch(
     taken: dict[str, FoundFile] = {}
     flags = {key: value for key, value in (keywords or {}).items() if value is not None}
     layers = _Layers(_without_paths(common or {}), flags)
-    planned = []
-    for number, source in enumerate(sources, start=1):
-        entry = _plan_one(source, number, output_dir, layers, mask)
-        first = taken.setdefault(collision_key(PurePosixPath(entry.key)), source)
-        if first is not source and not entry.refusal:
+    numbered = list(enumerate(sources, start=1))
+    found = [_plan_one(source, number, output_dir, layers, mask) for number, source in numbered]
+    planned = [entry for entry, _ in found]
+    # A name that a file's settings choose yields to the file that is called so.
+    for key in sorted(range(len(found)), key=lambda key: found[key][1]):
+        entry = planned[key]
+        first = taken.setdefault(collision_key(PurePosixPath(entry.key)), entry.source)
+        if first is not entry.source and not entry.refusal:
             refusal = (
                 f"The outputs of {first.label} would be called {entry.key} too, and each file"
                 ' needs a name of its own: give --name "{stem}-{suffix}" or "{folder}-{stem}".'
             )
-            entry = replace(entry, sheet=None, refusal=refusal)
-        planned.append(entry)
+            planned[key] = replace(entry, sheet=None, refusal=refusal)
     return tuple(planned)
 
 
 def _plan_one(
     source: FoundFile, number: int, output_dir: Path, layers: _Layers, mask: str | None
-) -> PlannedJob:
+) -> tuple[PlannedJob, bool]:
+    """The plan of a file, and whether its own settings choose the name of its outputs."""
     stem, suffix = split_name(source.path.name)
     fill = partial(apply_mask, stem=stem, suffix=suffix, folder=source.folder, number=number)
     folder = safe_folder(source.folder)
     target = output_dir / folder
-    default_name = fill(mask or settings.BATCH_NAME_MASK)
+    called = default_name = fill(mask or settings.BATCH_NAME_MASK)
     refusal = _unreadable_name(source)
     try:
         # On a share that is gone even the question whether a file is there stalls.
@@ -142,8 +145,9 @@ def _plan_one(
         )
     key = (folder / default_name).as_posix()
     if refusal:
-        return PlannedJob(source=source, key=key, job=job, refusal=refusal)
-    return PlannedJob(source=source, key=key, job=job_without_sheets(job), sheet=wish_of(job))
+        return PlannedJob(source=source, key=key, job=job, refusal=refusal), default_name != called
+    entry = PlannedJob(source=source, key=key, job=job_without_sheets(job), sheet=wish_of(job))
+    return entry, default_name != called
 
 
 def _line_of(error: Exception, source: FoundFile) -> str:
