@@ -32,11 +32,12 @@ GROUND: Final = (246, 243, 239)
 SIZE: Final = (1600, 720)
 SPACE: Final = (1000, 720)
 CLOSE_UP: Final = (580, 380)
-PATIENCE_S: Final = 60.0
+PATIENCE_S: Final = 300.0
+DRAWN: Final = "return document.querySelector('canvas.space').dataset.drawn"
 ZINC: Final = {
-    "--hide": "#9aa3ab",
-    "--hide-strip": "#9aa3ab",
-    "--lining": "#858d95",
+    "--hide": "#6d767e",
+    "--hide-strip": "#6d767e",
+    "--lining": "#5f676e",
     "--grain-mm": "0",
 }
 LINEN: Final = {
@@ -110,7 +111,7 @@ def space_pictures(
         size = {"width": 1400, "height": 1000, "deviceScaleFactor": 1.5, "mobile": False}
         browser.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", size)
         browser.get(page.resolve().as_uri())
-        _wait(browser, "return document.querySelector('canvas.space').dataset.drawn")
+        _wait(browser, DRAWN)
         for name, value in style.items():
             script = "document.documentElement.style.setProperty(arguments[0], arguments[1])"
             browser.execute_script(script, name, value)
@@ -123,10 +124,12 @@ def space_pictures(
                 " 0, width: arguments[0] + 'px', height: arguments[1] + 'px', maxHeight: 'none'})",
                 width, height,
             )  # fmt: skip
-            browser.execute_script("document.querySelector('[value=leather]').click()")
-            time.sleep(1.0)
-            browser.execute_script(f"document.querySelector('[data-view={view}]').click()")
-            time.sleep(2.0)
+            for wanted in ("[value=leather]", f"[data-view={view}]"):
+                browser.execute_script(
+                    "delete document.querySelector('canvas.space').dataset.drawn;"
+                    f"document.querySelector('{wanted}').click()"
+                )
+                _wait(browser, DRAWN)
             text = browser.execute_script(
                 "return document.querySelector('canvas.space').toDataURL('image/png')"
             )
@@ -141,7 +144,7 @@ def page_picture(page: Path, target: Path) -> None:
         size = {"width": 1366, "height": 768, "deviceScaleFactor": 1, "mobile": False}
         browser.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", size)
         browser.get(page.resolve().as_uri())
-        _wait(browser, "return document.querySelector('canvas.space').dataset.drawn")
+        _wait(browser, DRAWN)
         time.sleep(2.0)
         shown = Image.open(io.BytesIO(browser.get_screenshot_as_png())).convert("RGB")
     shown.quantize(128).save(target, optimize=True)
