@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import statistics
+import sys
 import time
 from pathlib import Path
 
@@ -15,9 +16,10 @@ from wrinkle_cad.batch.folder.events import BatchEvent, FileFinished, Listener
 from wrinkle_cad.batch.folder.inputs import find_sources
 from wrinkle_cad.batch.folder.plan import plan_batch
 from wrinkle_cad.batch.workers.ending import WorkerLimits
-from wrinkle_cad.batch.workers.pool import WorkerPool
+from wrinkle_cad.batch.workers.pool import Finished, WorkerPool
+from wrinkle_cad.batch.workers.task import Task
 from wrinkle_cad.job.job import Job
-from wrinkle_cad.job.outcome import JobDone
+from wrinkle_cad.job.outcome import JobDone, JobFailed, Progress
 from wrinkle_cad.job.workflow import run_job
 
 FILES = 60
@@ -86,3 +88,27 @@ def test_two_workers_are_at_least_1_7_times_as_fast_as_one(
     two: float = benchmark.pedantic(seconds_per_file, args=arguments, rounds=1)
     benchmark.extra_info["speed_up"] = one / two
     assert one / two >= 1.7
+
+
+def start_only(job: Job, *, progress: Progress | None = None) -> JobDone | JobFailed:
+    """Loads nothing that its worker has not, and says when it is done."""
+    assert "OCP" in sys.modules
+    return JobDone(job=job, outputs=(), summary={}, seconds={})
+
+
+def test_a_further_worker_starts_within_300_ms(tmp_path: Path, benchmark: BenchmarkFixture) -> None:
+    pool = WorkerPool(7, WorkerLimits())
+    task = Task(job=Job(input=tmp_path / "none.step"), job_function=start_only)
+
+    def one_more() -> None:
+        pool.give(0, task)
+        while not any(isinstance(event, Finished) for event in pool.wait(1.0)):
+            pass
+        # Another one must be started, while this one lives.
+        started.append(pool._idle.pop())
+
+    started: list[object] = []
+    benchmark.pedantic(one_more, rounds=5, warmup_rounds=1)
+    pool._idle.extend(started)  # type: ignore[arg-type]
+    pool.kill()
+    assert benchmark.stats.stats.median < 0.3

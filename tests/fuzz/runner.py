@@ -9,6 +9,7 @@ hung it or showed a bug are copied to DIR. Exit code 1 when a bug showed.
 from __future__ import annotations
 
 import argparse
+import os
 import random
 import shutil
 import sys
@@ -190,7 +191,8 @@ def judge(record: Record, figures: Figures, timeout_s: float) -> None:
 def check_surroundings(folder: Path, records: Sequence[Record], figures: Figures) -> None:
     """Notes processes that live on and files that are not where they belong."""
     for child in psutil.Process().children(recursive=True):
-        if "spawn_main" in " ".join(child.cmdline()):
+        # The server that workers are forked from is a child of this process, they are its.
+        if "forkserver" in " ".join(child.cmdline()) and child.ppid() != os.getpid():
             figures.bugs.append(f"process {child.pid} lives on")
     figures.bugs += [f"left behind: {path.name}" for path, _ in leftovers(folder / "out")]
     if {path.name for path in folder.iterdir()} != {"in", "out"}:

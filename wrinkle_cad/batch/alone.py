@@ -52,7 +52,7 @@ def run_alone(
     """
     if sys.platform == "win32":
         return run_job(job, progress=progress)
-    pool = make_pool(executor=None, workers=1, timeout=timeout, memory=memory)
+    pool = _pool(timeout, memory)
     here = replace(job, input=job.input.absolute(), output_dir=job.output_dir.absolute())
     clear_killed(here.output_dir)
     try:
@@ -86,7 +86,7 @@ def answer_alone(
     """
     if sys.platform == "win32":
         return question(path)
-    pool = make_pool(executor=None, workers=1, timeout=timeout, memory=memory)
+    pool = _pool(timeout, memory)
     # Some file names are no good names for outputs, and there are none.
     job = Job(input=path.absolute(), name="answer")
     outcome = _outcome_of(pool, Task(job=job, job_function=partial(_answered, question)), None)
@@ -104,6 +104,10 @@ def _answered(
     clock = PhaseClock(progress, 1)
     with compiling_told(clock.tell_compiling), clock.phase("read"):
         return JobDone(job=job, outputs=(), summary={"answer": question(job.input)}, seconds={})
+
+
+def _pool(timeout: float | None, memory: float | None) -> Pool:
+    return make_pool(executor=None, workers=1, timeout=timeout, memory=memory, is_forked=False)
 
 
 def _outcome_of(pool: Pool, task: Task, progress: Progress | None) -> JobDone | JobFailed:

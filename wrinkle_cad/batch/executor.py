@@ -97,6 +97,7 @@ def make_pool(
     timeout: float | None,
     memory: float | None,
     in_flight: int = settings.BATCH_IN_FLIGHT,
+    is_forked: bool = True,
 ) -> Pool:
     """Makes the pool that `run_batch`'s arguments ask for.
 
@@ -125,7 +126,7 @@ def make_pool(
         timeout_s=settings.BATCH_TIMEOUT_S if timeout is None else timeout,
         memory_gib=settings.BATCH_MEMORY_GIB if memory is None else memory,
     )
-    return WorkerPool(workers or core_count(), limits)
+    return WorkerPool(workers or core_count(), limits, is_forked=is_forked)
 
 
 def run_tasks(pool: Pool, tasks: Iterator[tuple[int, Task] | None]) -> Iterator[Event]:

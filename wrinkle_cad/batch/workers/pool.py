@@ -19,7 +19,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from multiprocessing import connection
 from multiprocessing.connection import Connection
-from typing import Final, Protocol
+from typing import TYPE_CHECKING, Final, Protocol
 
 from wrinkle_cad import settings
 from wrinkle_cad.job.outcome import JobDone
@@ -28,7 +28,11 @@ from .ending import MEMORY_ERRORS, Ending, WorkerLimits, failure_of
 from .task import Task, TaskResult
 from .worker import Began, PhaseReached, WorkerFault, peak_bytes, serve
 
+if TYPE_CHECKING:
+    from multiprocessing.context import ForkServerContext, SpawnContext
+
 _GOODBYE_S: Final = 2.0
+_PRELOAD: Final = "wrinkle_cad.batch.workers.preload"
 _KEPT_BYTES: Final = 4000
 _INTERRUPTING: Final = tuple(
     getattr(signal, name) for name in ("SIGINT", "SIGTERM", "SIGHUP") if hasattr(signal, name)
@@ -89,8 +93,9 @@ class Pool(Protocol):
 class _Worker:
     """A worker process and what is known about it."""
 
-    def __init__(self, limits: WorkerLimits) -> None:
-        context = multiprocessing.get_context("spawn")
+    def __init__(self, limits: WorkerLimits, *, is_forked: bool) -> None:
+        context: ForkServerContext | SpawnContext
+        context = _fork_server() if is_forked else multiprocessing.get_context("spawn")
         self.pipe, tasks = context.Pipe()
         self.stderr, stderr = context.Pipe(duplex=False)
         self.process = context.Process(
@@ -203,16 +208,26 @@ def _undisturbed() -> Iterator[None]:
         signal.raise_signal(number)
 
 
+def _fork_server() -> ForkServerContext:
+    """Workers are forked from a process that has loaded what jobs need."""
+    context = multiprocessing.get_context("forkserver")
+    context.set_forkserver_preload([_PRELOAD])
+    return context
+
+
 class WorkerPool:
     """Worker processes on this machine, each with a limit of time and memory.
 
     Args:
         count: how many at a time, 1 or more.
         limits: for each job.
+        is_forked: whether workers are forked from a process that has loaded what they need, which
+            makes all but the first start at once; a single job is not worth that process.
     """
 
-    def __init__(self, count: int, limits: WorkerLimits) -> None:
+    def __init__(self, count: int, limits: WorkerLimits, *, is_forked: bool = True) -> None:
         self._count = count
+        self._is_forked = is_forked
         self._limits = limits
         self._idle: list[_Worker] = []
         self._busy: list[_Worker] = []
@@ -229,10 +244,19 @@ class WorkerPool:
     def give(self, key: int, task: Task) -> None:
         """Hands a task to an idle worker or a new one."""
         with _undisturbed():
-            worker = self._idle.pop() if self._idle else _Worker(self._limits)
+            worker = self._idle.pop() if self._idle else self._started()
             self._busy.append(worker)
         self._starts[key] = self._starts.get(key, 0) + 1
         worker.give(key, task)
+
+    def _started(self) -> _Worker:
+        if self._is_forked:
+            try:
+                return _Worker(self._limits, is_forked=True)
+            except (EOFError, OSError):
+                # The server died of what it loads; a worker of its own can say what that is.
+                self._is_forked = False
+        return _Worker(self._limits, is_forked=False)
 
     def wait(self, patience: float) -> Sequence[Event]:
         """Waits until a worker says something, at most ``patience`` seconds."""

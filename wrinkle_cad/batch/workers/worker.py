@@ -77,8 +77,7 @@ def serve(tasks: Connection, stderr: Connection, memory_bytes: int | None, paren
     # Ctrl-C reaches the whole group; the parent decides what happens then.
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     _redirect(stderr)
-    for name in _THREAD_SETTINGS:
-        os.environ[name] = "1"
+    one_thread()
     _limit_memory(memory_bytes)
     while True:
         try:
@@ -91,21 +90,46 @@ def serve(tasks: Connection, stderr: Connection, memory_bytes: int | None, paren
 
 
 def end_with_parent(parent_pid: int) -> None:
-    """Makes this process end within a second of its parent, even when the parent is killed.
+    """Makes this process end within a second of another, even when that one is killed.
 
     Linux sends a signal that nothing can hold up; a thread watches too, for other systems.
+
+    Args:
+        parent_pid: its parent, or the parent of the fork server that is its parent.
     """
-    if sys.platform.startswith("linux"):
-        ctypes.CDLL(None).prctl(_SET_DEATH_SIGNAL, signal.SIGKILL, 0, 0, 0)
+    die_with_parent()
+    parent = os.getppid()
 
     def watch() -> None:
-        while os.getppid() == parent_pid:
+        while os.getppid() == parent and _is_alive(parent_pid):
             time.sleep(_PARENT_CHECK_S)
         os._exit(1)
 
-    if os.getppid() != parent_pid:
+    if not _is_alive(parent_pid):
         os._exit(1)
     threading.Thread(target=watch, name="parent watch", daemon=True).start()
+
+
+def die_with_parent() -> None:
+    """Has Linux kill this process when its parent ends; of no effect elsewhere."""
+    if sys.platform.startswith("linux"):
+        ctypes.CDLL(None).prctl(_SET_DEATH_SIGNAL, signal.SIGKILL, 0, 0, 0)
+
+
+def one_thread() -> None:
+    """Says to libraries that are loaded after this that there is one thread for each worker."""
+    for name in _THREAD_SETTINGS:
+        os.environ[name] = "1"
+
+
+def _is_alive(pid: int) -> bool:
+    try:
+        os.kill(pid, 0)
+    except ProcessLookupError:
+        return False
+    except PermissionError:
+        pass
+    return True
 
 
 def peak_bytes(pid: int | str = "self") -> int:
