@@ -7,6 +7,7 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 import shapely
+from numpy.typing import NDArray
 
 from wrinkle_cad.errors import Finding
 from wrinkle_cad.pattern.piece.piece import Floats
@@ -39,19 +40,16 @@ def closed_contours(lines: Sequence[FileLine]) -> tuple[list[Floats], Floats]:
     """
     rings = [_ring(line) for line in lines if line.is_closed and len(line.points) > 2]
     loose = _meeting([line.points for line in lines if not line.is_closed and len(line.points) > 1])
-    merged = shapely.line_merge(shapely.MultiLineString(_distinct(loose)))
+    merged = shapely.line_merge(shapely.MultiLineString(_distinct(*loose)))
     parts = [part for part in shapely.get_parts(merged) if part.length > limits.ZERO]
     rings += [np.array(part.coords) for part in parts if part.is_closed]
     ends = [part.coords[i] for part in parts if not part.is_closed for i in (0, -1)]
     return rings, np.array(ends, dtype=np.float64).reshape(-1, 2)
 
 
-def _distinct(loose: Sequence[Floats]) -> list[shapely.LineString]:
-    """Returns lines, each once, whichever way it runs."""
-    if not loose:
-        return []
-    index = np.repeat(np.arange(len(loose)), [len(points) for points in loose])
-    lines = shapely.linestrings(np.vstack(loose), indices=index)
+def _distinct(points: Floats, counts: NDArray[np.int64]) -> list[shapely.LineString]:
+    """Returns lines of so many points each, every one once, whichever way it runs."""
+    lines = shapely.linestrings(points, indices=np.repeat(np.arange(len(counts)), counts))
     keys = shapely.to_wkb(shapely.normalize(lines)).tolist()
     return list(dict(zip(keys, lines.tolist(), strict=True)).values())
 
@@ -60,26 +58,23 @@ def _ring(line: FileLine) -> Floats:
     return np.vstack((line.points, line.points[:1]))
 
 
-def _meeting(loose: Sequence[Floats]) -> list[Floats]:
-    """Returns the same lines with ends that meet within the limit made equal to the last bit."""
+def _meeting(loose: Sequence[Floats]) -> tuple[Floats, NDArray[np.int64]]:
+    """Returns the lines' points (k, 2), ends that meet made equal, and how many each line has."""
+    counts = np.array([len(points) for points in loose], dtype=np.int64)
     if not loose:
-        return []
+        return np.zeros((0, 2)), counts
     # scipy loads in a fifth of a second, and most drawings have closed contours only.
     from scipy.spatial import cKDTree
 
-    ends = np.vstack([points[[0, -1]] for points in loose])
-    places, index = np.unique(ends, axis=0, return_inverse=True)
+    points, stops = np.vstack(loose), np.cumsum(counts)
+    at = np.column_stack((stops - counts, stops - 1)).reshape(-1)
+    places, index = np.unique(points[at], axis=0, return_inverse=True)
     near = cKDTree(places).query_pairs(limits.ZERO, output_type="ndarray")
     first = np.arange(len(places))
     for i, j in near[np.lexsort((near[:, 1], near[:, 0]))]:
         first[j] = min(first[i], first[j])
-    joined = places[first[index.reshape(-1)]].reshape(-1, 2, 2)
-    made = []
-    for points, (start, stop) in zip(loose, joined, strict=True):
-        moved = np.array(points)
-        moved[0], moved[-1] = start, stop
-        made.append(moved)
-    return made
+    points[at] = places[first[index.reshape(-1)]]
+    return points, counts
 
 
 def _gaps(ends: Floats) -> Iterator[Finding]:

@@ -190,7 +190,10 @@ def _with_short_segments(lines: Sequence[FileLine]) -> Iterator[FileLine]:
         return
     counts = np.array([len(line.corners) for line in lines])
     # Of a closed line the segment that closes it counts: each ends with its first point.
-    rings = (np.vstack((line.corners, line.corners[: int(line.is_closed)])) for line in lines)
+    rings = (
+        np.vstack((line.corners, line.corners[:1])) if line.is_closed else line.corners
+        for line in lines
+    )
     closed = counts + [int(line.is_closed) for line in lines]
     points = np.vstack(list(rings))
     stops = np.cumsum(closed)
