@@ -39,7 +39,7 @@ class Ended(NamedTuple):
 
 
 def ended_files(
-    paths: Sequence[Path], outputs: Path, *, at_a_time: int = 2, trials_every: int = 10
+    paths: Sequence[Path], outputs: Path, *, at_a_time: int = 2, trials_every: int = 25
 ) -> Iterator[Ended]:
     """Runs files, so many at a time, in children; this process must be one that may be forked.
 
