@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -11,6 +12,7 @@ from shapely import Polygon
 
 from tests.cad.shoes import rails, shoe
 from tests.seeds import seeds
+from wrinkle_cad.cad.exchange.read import read_cad
 from wrinkle_cad.cad.kernel.measures import is_valid
 from wrinkle_cad.cad.upper.carve import carve, carve_all
 from wrinkle_cad.cad.upper.stitch import stitch
@@ -129,3 +131,17 @@ def test_a_rail_that_stands_on_the_upper_is_refused() -> None:
     p, _ = lines(0, 0, 100, 20)
     with pytest.raises(InputError, match=r"The feet of rail Q on the upper are one point"):
         carve(plate(), p, Edge.make_line((0, 30, 0), (0, 30, 9)))
+
+
+def test_the_openings_of_three_wrinkles_overlap_with_wide_margins_before_anything_is_cut(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    example = Path(__file__).parents[3] / "shoe_examples" / "three_wrinkles" / "three_wrinkles.step"
+    shapes = {shape.name: shape.shape for shape in read_cad(example).shapes}
+    names = ("front", "middle", "back")
+    rails = [(shapes[f"{name}:P"], shapes[f"{name}:Q"]) for name in names]
+    monkeypatch.setattr("wrinkle_cad.cad.upper.carve.split_faces", None)
+    with pytest.raises(
+        InputError, match=r"opening of front and .* of middle overlap by up to 0\.6"
+    ):
+        carve_all(shapes["upper"], rails, margin=4.0, allow_split=True, names=names)
