@@ -6,6 +6,7 @@ a machine that is busy.
 
 from __future__ import annotations
 
+import faulthandler
 import json
 import os
 import resource
@@ -89,6 +90,7 @@ def _child(job: Job) -> tuple[int, int]:
         os.set_blocking(ours, False)
         return pid, ours
     try:
+        faulthandler.disable()
         resource.setrlimit(resource.RLIMIT_CPU, (int(MOST_CPU_S), int(MOST_CPU_S) + 1))
         resource.setrlimit(resource.RLIMIT_AS, (_MOST_BYTES, _MOST_BYTES))
         resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
