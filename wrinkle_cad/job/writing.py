@@ -67,7 +67,9 @@ def write_shapes(job: Job, made: Made, paths: Mapping[str, Path]) -> None:
     write_step(paths["step"], everything, schema=job.step_schema, timestamp=timestamp_of(job))
     shapes = [part.shape for part in parts]
     meshed = shapes[0] if len(shapes) == 1 else make_compound(shapes)
-    write_stl(paths["stl"], meshed, tolerance=job.tolerance)
+    # A strip is asked for to its tolerance; of the upper, which is as it was, a picture will do.
+    upper_tolerance = max(job.tolerance, settings.TOLERANCE)
+    write_stl(paths["stl"], meshed, tolerance=job.tolerance, curved_tolerance=upper_tolerance)
 
 
 def write_flat(job: Job, made: Made, paths: Mapping[str, Path]) -> list[dict[str, str]]:

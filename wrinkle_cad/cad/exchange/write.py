@@ -193,6 +193,7 @@ def write_stl(
     shape: TopoDS_Shape,
     *,
     tolerance: float = settings.TOLERANCE,
+    curved_tolerance: float = 0.0,
 ) -> None:
     """Writes the triangles of a shape as a binary STL file, in mm.
 
@@ -200,19 +201,25 @@ def write_stl(
         path: the file; it is replaced as a whole.
         shape: anything with faces; triangles that it already carries are not used.
         tolerance: mm; how far a triangle may lie from its face.
+        curved_tolerance: mm; the same for faces curved both ways, if larger.
 
     Raises:
         ExportError: there are no faces, the kernel cannot mesh them, or the file cannot be written;
             what stood there before is untouched.
     """
     try:
-        content = stl_bytes(shape, tolerance=tolerance)
+        content = stl_bytes(shape, tolerance=tolerance, curved_tolerance=curved_tolerance)
     except CadError as error:
         raise ExportError(path, "STL", error.message) from error
     write_export(path, "STL", content)
 
 
-def stl_bytes(shape: TopoDS_Shape, *, tolerance: float = settings.TOLERANCE) -> bytes:
+def stl_bytes(
+    shape: TopoDS_Shape,
+    *,
+    tolerance: float = settings.TOLERANCE,
+    curved_tolerance: float = 0.0,
+) -> bytes:
     """Returns the content of a binary STL file; see ``write_stl``.
 
     Raises:
@@ -222,7 +229,9 @@ def stl_bytes(shape: TopoDS_Shape, *, tolerance: float = settings.TOLERANCE) -> 
         raise CadError("mesh the shape", "it has no faces. Pass a face, shell or solid.")
     silence_kernel()
     for share in (1.0, *_OTHER_MESHES):
-        points, triangles = mesh_of(shape, tolerance=share * tolerance)
+        points, triangles = mesh_of(
+            shape, tolerance=share * tolerance, curved_tolerance=share * curved_tolerance
+        )
         triangles = without_doubled(points, triangles)
         if not shares_edges_thrice(points, triangles):
             break

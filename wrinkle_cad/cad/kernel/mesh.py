@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
 from OCP.BRep import BRep_Tool
+from OCP.BRepAdaptor import BRepAdaptor_Surface
 from OCP.BRepBuilderAPI import BRepBuilderAPI_Copy
 from OCP.BRepMesh import BRepMesh_IncrementalMesh
 from OCP.BRepTools import BRepTools
+from OCP.GeomAbs import GeomAbs_BSplineSurface, GeomAbs_Cone, GeomAbs_Cylinder, GeomAbs_Plane
 from OCP.IMeshTools import IMeshTools_Parameters
 from OCP.TopAbs import TopAbs_REVERSED
 from OCP.TopLoc import TopLoc_Location
@@ -34,6 +36,7 @@ def mesh_of(
     *,
     tolerance: float = settings.TOLERANCE,
     angular_tolerance: float = settings.MESH_ANGLE,
+    curved_tolerance: float = 0.0,
 ) -> tuple[Floats, Indices]:
     """Returns the triangles of a shape's faces; vertices are not shared between faces.
 
@@ -41,6 +44,8 @@ def mesh_of(
         shape: anything with faces; it is not written to.
         tolerance: mm; how far a triangle may lie from its face.
         angular_tolerance: rad; how far neighbouring normals may differ on one face.
+        curved_tolerance: mm; the same for faces that are curved both ways, as an upper is and a
+            strip is not, if larger than ``tolerance``; along edges shared with others these hold.
 
     Returns:
         (k, 3) float64, mm, and (l, 3) int64 into it, counter-clockwise seen from the outside.
@@ -52,7 +57,7 @@ def mesh_of(
         # A mesh is stored in the shape, and whoever owns the shape did not ask for one.
         own = BRepBuilderAPI_Copy(shape, True, False).Shape()
         BRepTools.Clean_s(own)
-        meshes = list(_meshes_of(own, tolerance, angular_tolerance))
+        meshes = list(_meshes_of(own, tolerance, angular_tolerance, curved_tolerance))
     counts = np.cumsum([0, *(len(points) for points, _ in meshes)])
     return (
         np.vstack([np.zeros((0, 3)), *(points for points, _ in meshes)]),
@@ -66,16 +71,20 @@ def mesh_of(
 
 
 def _meshes_of(
-    own: TopoDS_Shape, tolerance: float, angular_tolerance: float
+    own: TopoDS_Shape, tolerance: float, angular_tolerance: float, curved_tolerance: float
 ) -> Iterator[tuple[Floats, Indices]]:
     """The points and triangles of each face; triangles are stored in the shape."""
-    wanted = IMeshTools_Parameters()
-    wanted.Deflection = settings.MESH_SAG_PER_TOLERANCE * tolerance
-    wanted.Angle = angular_tolerance
+    wanted = _wanted(tolerance, angular_tolerance)
     faces = faces_of(own)
     apices = [apex_of(face) for face in faces]
     others = [face for face, apex in zip(faces, apices, strict=True) if apex is None]
-    if others:
+    if curved_tolerance > tolerance:
+        plain = [face for face in others if not _is_curved_both_ways(face)]
+        # What is meshed already keeps its points, those on shared edges too; cones only lend those.
+        _mesh(plain, wanted)
+        _mesh([face for face in faces if apex_of(face) is not None], _on_edges_only(wanted))
+        _mesh(others, _wanted(curved_tolerance, angular_tolerance))
+    elif others:
         # All at once: faces that share an edge must have the same points on it.
         BRepMesh_IncrementalMesh(make_compound(others), wanted)
     cones = [(face, at) for face, at in zip(faces, apices, strict=True) if at is not None]
@@ -85,6 +94,34 @@ def _meshes_of(
             yield next(fans)
         else:
             yield from _stored_mesh(face)
+
+
+def _wanted(tolerance: float, angular_tolerance: float) -> IMeshTools_Parameters:
+    wanted = IMeshTools_Parameters()
+    wanted.Deflection = settings.MESH_SAG_PER_TOLERANCE * tolerance
+    wanted.Angle = angular_tolerance
+    return wanted
+
+
+def _on_edges_only(wanted: IMeshTools_Parameters) -> IMeshTools_Parameters:
+    """The same without points inside of faces."""
+    own = _wanted(wanted.Deflection / settings.MESH_SAG_PER_TOLERANCE, wanted.Angle)
+    own.InternalVerticesMode = False
+    own.ControlSurfaceDeflection = False
+    return own
+
+
+def _mesh(faces: Sequence[TopoDS_Face], wanted: IMeshTools_Parameters) -> None:
+    if faces:
+        BRepMesh_IncrementalMesh(make_compound(faces), wanted)
+
+
+def _is_curved_both_ways(face: TopoDS_Face) -> bool:
+    """Whether no straight lines are known to lie in a face's surface."""
+    surface = BRepAdaptor_Surface(face, False)
+    if surface.GetType() == GeomAbs_BSplineSurface:
+        return bool(surface.UDegree() > 1 and surface.VDegree() > 1)
+    return surface.GetType() not in (GeomAbs_Plane, GeomAbs_Cylinder, GeomAbs_Cone)
 
 
 def _stored_mesh(face: TopoDS_Face) -> Iterator[tuple[Floats, Indices]]:
