@@ -208,6 +208,25 @@ def test_a_leg_along_a_ruling_of_a_cylinder_folds_nothing() -> None:
         assert strip.strain.largest < 1e-6
 
 
+@pytest.mark.parametrize("away", [0.1, 1.0])
+def test_close_to_the_edge_of_regression_the_radius_is_right(away: float) -> None:
+    """On the tangents of a helix of radius a and pitch 2 pi b it is a / b times the way from it."""
+    a, b, far = 20.0, 8.0, 15.0
+
+    def along(way: float) -> RailCurve:
+        s = way / math.hypot(a, b)
+        return analytic(
+            lambda u: stack(
+                a * (np.cos(u) - s * np.sin(u)), a * (np.sin(u) + s * np.cos(u)), b * (u + s)
+            ),
+            (0.0, 2.0),
+        )
+
+    strip = ruled((along(away), along(away + far)))
+    assert strip.developable_share == pytest.approx(1.0)
+    assert strip.radius.min() == pytest.approx(away * a / b, rel=0.01)
+
+
 def test_a_flat_strap_with_a_tab_is_one_plane() -> None:
     strip = ruled(
         (

@@ -29,7 +29,7 @@ CORNER_REACH: Final = 0.1
 """... unless one is there, within this share of the distance between the rails."""
 TURN_PER_PART: Final = math.radians(45.0)
 """So much turning of the other rail is opposite one chord at most."""
-TWIST_PER_PART: Final = math.radians(25.0)
+TWIST_PER_PART: Final = math.radians(15.0)
 """So much turn of the way to the other rail, about this one, is over one chord at most."""
 STEEP: Final = 0.3
 """A way to the other rail that leaves this one at a smaller sine has no turn about it."""
@@ -61,9 +61,9 @@ def sample_against(
     A corner of the other rail puts the place nearest to it on this one, unless a vertex lies within
     a tenth of the distance there. Then chords are split into parts of equal measure, at most 1
     each: the integral of ds / h, with h the distance from the other rail, but at least a quarter of
-    the strip's largest width and one and a half chords of the other rail there; the turning of the
-    other rail at the vertices opposite, in units of 45 degrees; and how far the way to the other
-    rail turns about this one, in units of 25 degrees (two skew lines fold by so much less).
+    the strip's largest width and one and a half chords of the other rail there; and the turning
+    of the other rail at the vertices opposite, in units of 45 degrees. Or, where that is more, how
+    far the way to the other rail turns about this one, in units of 15 degrees: two skew lines.
 
     Args:
         point_at: the rail, from (k,) float64 parameters to (k, 3) points in mm.
@@ -197,7 +197,7 @@ def _split(
             continue
         row = np.full(len(length), -1)
         row[chosen] = np.arange(len(chosen))
-        grows = _lengths_measure(line, other, knots, chosen, looks, least)
+        grows, winds = _lengths_measure(line, other, knots, chosen, looks, least)
         is_here = row[owner] >= 0
         _add_turns(
             grows,
@@ -205,6 +205,8 @@ def _split(
             ((place - knots[owner]) / length[owner])[is_here],
             parts[is_here],
         )
+        more = np.cumsum(winds, axis=1)[:, -1] > np.cumsum(grows, axis=1)[:, -1]
+        grows[more] = winds[more]
         measure = np.concatenate((np.zeros((len(chosen), 1)), np.cumsum(grows, axis=1)), axis=1)
         for k, stretch in enumerate(chosen):
             count = math.ceil(measure[k, -1] - PART_SLACK)
@@ -221,8 +223,8 @@ def _lengths_measure(
     chosen: NDArray[np.int64],
     looks: int,
     least: float,
-) -> FloatArray:
-    """(c, looks): the integral of ds / h over each bin of the chosen stretches."""
+) -> tuple[FloatArray, FloatArray]:
+    """(c, looks) each, for bins of chosen stretches: the integral of ds / h, the turn about."""
     length = np.diff(knots)[chosen]
     places = knots[chosen][:, None] + length[:, None] * (np.arange(looks + 1) / looks)
     found = nearest_on_polyline(points_at(line, arc_lengths(line), places.ravel()), other)
@@ -238,8 +240,8 @@ def _lengths_measure(
     start, end = other[found.segment], other[found.segment + 1]
     way = start + found.share[:, None] * (end - start) - points
     along = np.diff(points.reshape(len(chosen), looks + 1, 3)[:, [0, -1]], axis=1)
-    grows += _turns_about(way.reshape(len(chosen), looks + 1, 3), along, least) / TWIST_PER_PART
-    return grows
+    winds = _turns_about(way.reshape(len(chosen), looks + 1, 3), along, least) / TWIST_PER_PART
+    return grows, winds
 
 
 def _turns_about(way: FloatArray, along: FloatArray, least: float) -> FloatArray:

@@ -20,6 +20,8 @@ Bools = npt.NDArray[np.bool_]
 
 ROUNDS: Final = 24
 """Rounds of the bracketed secant; it mostly needs four to six."""
+NEARER: Final = (1.0, 0.7, 0.5, 0.35, 0.25)
+"""Shares of the reach in which a zero is sought in turn, where twists are too large to tell."""
 FLAT: Final = 1e-6
 """rad; where rulings twist by less wherever they slide, the sheet is flat and they stay."""
 _NO_TWIST: Final = 1e-13
@@ -172,11 +174,28 @@ class _Slide:
 
 
 def _slid(slide: _Slide, reach: float) -> Floats:
-    """(k,) mm: by how much each ruling slides to where its twist is 0, or else least."""
+    """(k,) mm: by how much each ruling slides to where its twist is 0, or else least.
+
+    Near an edge of regression the twist turns over within a hair of it: there within less.
+    """
+    x = np.zeros(len(slide.u))
+    left = np.arange(len(x))
+    for nearer in NEARER:
+        moved, sane = _slid_within(slide, nearer * reach)
+        x[left[sane]] = moved[sane]
+        if sane.all():
+            break
+        left, slide = left[~sane], slide.among(~sane)
+    return x
+
+
+def _slid_within(slide: _Slide, reach: float) -> tuple[Floats, Bools]:
+    """(k,) mm likewise, and whether no twist within that reach is a right angle or more."""
     zero = np.zeros(len(slide.u))
     f = np.stack([slide.twist(zero + x) for x in (-reach, 0.0, reach)])
-    sane = (np.abs(f) < np.pi / 2).all(axis=0) & (np.abs(f) > FLAT).any(axis=0)
-    left, right = sane & (f[0] * f[1] <= 0.0), sane & (f[1] * f[2] <= 0.0)
+    sane: Bools = np.all(np.abs(f) < np.pi / 2, axis=0)
+    twisting = sane & (np.abs(f) > FLAT).any(axis=0)
+    left, right = twisting & (f[0] * f[1] <= 0.0), twisting & (f[1] * f[2] <= 0.0)
     # Of two zeros the nearer one, where the twist at the far end is smaller.
     left &= ~right | (np.abs(f[0]) < np.abs(f[2]))
     crossing, x = left | right, zero.copy()
@@ -185,10 +204,10 @@ def _slid(slide: _Slide, reach: float) -> Floats:
         f_low, f_high = np.where(left, f[0], f[1]), np.where(left, f[1], f[2])
         ends = (values[crossing] for values in (low, high, f_low, f_high))
         x[crossing] = _zero_between(slide.among(crossing), *ends)
-    twisted = sane & ~crossing
+    twisted = twisting & ~crossing
     if twisted.any():
         x[twisted] = _least_near(slide.among(twisted), reach / 2)
-    return x
+    return x, sane
 
 
 def _zero_between(
