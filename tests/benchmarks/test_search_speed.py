@@ -23,7 +23,7 @@ import psutil
 from tests.benchmarks.test_search_speed import wavy_strip
 from wrinkle_cad.strip import triangulate
 
-triangulate(*wavy_strip(300))
+triangulate(*wavy_strip(600))
 p, q = wavy_strip(5000)
 process = psutil.Process()
 before = process.memory_info().rss
@@ -66,7 +66,7 @@ def test_a_million_bridges(benchmark, criteria: tuple[str, ...]) -> None:
 @pytest.mark.benchmark(group="search")
 def test_twenty_five_million_bridges(benchmark) -> None:
     strip = wavy_strip(5000)
-    triangulate(*wavy_strip(50))
+    triangulate(*wavy_strip(600))
     benchmark.pedantic(triangulate, strip, rounds=3)
     assert benchmark.stats.stats.median < 4.0
 
@@ -100,7 +100,7 @@ def test_the_whole_search_is_faster_than_the_program_over_all_bridges(
 
 @pytest.mark.benchmark(group="search", timer=time.process_time)
 def test_time_grows_with_the_samples_of_a_developable_strip(benchmark) -> None:
-    triangulate(*cylinder_strip(300), price=None)
+    triangulate(*cylinder_strip(600), price=None)
     taken = {}
     for count in (1000, 10_000):
         times = []

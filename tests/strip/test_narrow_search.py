@@ -10,6 +10,7 @@ import pytest
 
 from tests.seeds import seeds
 from tests.strip import exact_strips
+from wrinkle_cad.strip import narrow_search
 from wrinkle_cad.strip.bars import Bars
 from wrinkle_cad.strip.folding import HINGE
 from wrinkle_cad.strip.global_search import best_steps
@@ -23,6 +24,11 @@ NAMES = ("invalid", "bending", "area", "length")
 LISTS = [names for count in range(1, 5) for names in permutations(NAMES, count)]
 PRICES = (0.0, 1.0, 50.0, 1e4)
 KINDS = ("smooth", "noisy", "planar", "lattice", "straight", "meeting", "twisted", "developable")
+
+
+@pytest.fixture(autouse=True)
+def count_in_small_strips(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(narrow_search, "SMALL", 0)
 
 
 def waves(random: np.random.Generator, count: int, rise: float) -> tuple[Floats, Floats]:

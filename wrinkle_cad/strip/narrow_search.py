@@ -25,8 +25,9 @@ from .objective import DEGENERATE, FOLD_BACK, INVALID, Weights
 Floats = npt.NDArray[np.float64]
 Steps = npt.NDArray[np.int8]
 
-SMALL: Final = 4096
-"""So few bridges are all looked at: counting them first takes as long."""
+SMALL: Final = 2**18
+"""So few bridges are all looked at: that takes 6 ms, and a first run need not compile how they are
+counted, which takes a thousand times as long."""
 FEW: Final = 8
 """So many bridges for each sample are looked at before it is known what going on costs."""
 FIRST_SLACK: Final = 16
