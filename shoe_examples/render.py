@@ -12,20 +12,21 @@ import shutil
 import sys
 import tempfile
 import time
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Final
 
+import ezdxf
+import ezdxf.path
 import numpy as np
 from PIL import Image
 from selenium import webdriver
 from selenium.webdriver.chrome.options import Options
 from selenium.webdriver.chrome.service import Service
 
-from wrinkle_cad import Job, JobDone, PieceSettings, make_job, run_job
-from wrinkle_cad.pattern.piece.piece import PatternPiece
+from wrinkle_cad import Job, JobDone, make_job, run_job
 
 HERE: Final = Path(__file__).parent
 GROUND: Final = (246, 243, 239)
@@ -157,32 +158,31 @@ def _wait(browser: webdriver.Chrome, script: str) -> None:
         time.sleep(0.1)
 
 
-def pattern_picture(
-    pieces: Sequence[PatternPiece], tone: str, size: tuple[int, int]
-) -> Image.Image:
-    """Returns the pieces as cut from the material, to one scale, the longest first."""
+def pattern_picture(dxf: Path, tone: str, size: tuple[int, int]) -> Image.Image:
+    """Returns the pieces of a pattern as cut from the material, to one scale; six at most."""
     import matplotlib as mpl
 
     mpl.use("Agg")
     import matplotlib.pyplot as plt
 
+    drawn: dict[str, list[np.ndarray]] = {layer: [] for layer in ("CUT", "SEW", "NOTCH")}
+    for entity in ezdxf.readfile(dxf).modelspace():
+        if entity.dxf.layer in drawn and entity.dxftype() in ("LWPOLYLINE", "LINE"):
+            path = ezdxf.path.make_path(entity)
+            points = np.array([(at.x, at.y) for at in path.control_vertices()])
+            drawn[entity.dxf.layer].append(points)
     figure = plt.figure(figsize=(size[0] / 100, size[1] / 100), dpi=100)
     axes = figure.add_axes((0.0, 0.0, 1.0, 1.0))
-    top = 0.0
-    widest = max(float(np.ptp(piece.cut_line[:, 0])) for piece in pieces)
-    for piece in pieces:
-        low, high = piece.cut_line.min(axis=0), piece.cut_line.max(axis=0)
+    cuts = drawn["CUT"][:6]
+    widest, top = max(float(np.ptp(cut[:, 0])) for cut in cuts), 0.0
+    for cut in cuts:
+        low, high = cut.min(axis=0), cut.max(axis=0)
         shift = np.array([(widest - high[0] + low[0]) / 2 - low[0], top - high[1]])
-        outline = np.vstack((piece.cut_line, piece.cut_line[:1])) + shift
-        axes.fill(*outline.T, facecolor=tone, edgecolor="#3a2a1c", linewidth=1.2)
-        if piece.has_allowance:
-            sewn = np.vstack((piece.sew_line, piece.sew_line[:1])) + shift
-            axes.plot(*sewn.T, color="#fff7ea", linewidth=1.0, dashes=(4, 3))
-        for notch in piece.notches:
-            ends = (
-                np.array([notch.position, notch.position + notch.depth * notch.direction]) + shift
-            )
-            axes.plot(*ends.T, color="#3a2a1c", linewidth=1.0)
+        axes.fill(*(cut + shift).T, facecolor=tone, edgecolor="#3a2a1c", linewidth=1.2)
+        for layer, color, dashes in (("SEW", "#fff7ea", (4, 3)), ("NOTCH", "#3a2a1c", (1, 0))):
+            for line in drawn[layer]:
+                if (line >= low - 1.0).all() and (line <= high + 1.0).all():
+                    axes.plot(*(line + shift).T, color=color, linewidth=1.0, dashes=dashes)
         top -= float(high[1] - low[1]) + 0.05 * widest
     axes.set_aspect("equal")
     axes.margins(0.03)
@@ -207,34 +207,18 @@ def draw(name: str) -> Path:
         pictures = space_pictures(Path(outputs) / f"{job.name}.html", shown.style, views)
         if name == WITH_PAGE:
             page_picture(Path(outputs) / f"{job.name}.html", folder / "page.png")
-        pieces = _pieces(job)
+        room = (560, SIZE[1] - 60 - (CLOSE_UP[1] if shown.has_close_up else 0))
+        tone = shown.style.get("--hide-strip", "#9a7152")
+        pattern = pattern_picture(Path(outputs) / f"{job.name}.dxf", tone, room)
     sheet = Image.new("RGBA", SIZE, (*GROUND, 255))
     sheet.alpha_composite(pictures[0], (10, 0))
-    room = (560, SIZE[1] - 60 - (CLOSE_UP[1] if shown.has_close_up else 0))
-    tone = shown.style.get("--hide-strip", "#9a7152")
     if shown.has_close_up:
         sheet.alpha_composite(pictures[1], (SIZE[0] - CLOSE_UP[0] - 10, 10))
-    sheet.alpha_composite(
-        pattern_picture(pieces, tone, room), (SIZE[0] - room[0] - 20, SIZE[1] - room[1] - 20)
-    )
+    sheet.alpha_composite(pattern, (SIZE[0] - room[0] - 20, SIZE[1] - room[1] - 20))
     target = folder / "picture.png"
     quantized = sheet.convert("RGB").quantize(256, dither=Image.Dither.FLOYDSTEINBERG)
     quantized.save(target, optimize=True)
     return target
-
-
-def _pieces(job: Job) -> Sequence[PatternPiece]:
-    """The wrinkles' pieces, then the bands'; at most six are drawn."""
-    from wrinkle_cad import choose_inputs, pattern_of_strips, read_cad, wrinkle_upper
-    from wrinkle_cad.job.parts import limits_of, piece_settings_of, rails_of, strip_of
-
-    chosen = choose_inputs(read_cad(job.input), p=job.p, q=job.q, upper=job.upper)
-    if chosen.upper is None:
-        strips = [strip_of(job, *rails_of(job, given), given.name) for given in chosen.strips]
-        return strips[0].pattern(piece_settings_of(job, limits_of(job))).pieces
-    upper = wrinkle_upper(job, chosen)
-    settings: PieceSettings = piece_settings_of(job, limits_of(job))
-    return pattern_of_strips([*upper.strips, *upper.bands], settings).pieces[:6]
 
 
 if __name__ == "__main__":
