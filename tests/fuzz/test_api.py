@@ -82,3 +82,9 @@ def test_random_uppers_take_a_wrinkle_or_say_why_not(seed: int) -> None:
             return
     assert is_valid(stitched.shell.wrapped)
     assert math.isfinite(stitched.report.max_edge_tolerance_mm)
+
+
+@pytest.mark.parametrize("seed", [32, 90])
+def test_rails_with_coordinates_that_are_none_are_one_sentence(seed: int) -> None:
+    with in_time(), pytest.raises(WrinkleError, match="NaN or infinite"):
+        WrinkleStrip(*random_pair(seed))

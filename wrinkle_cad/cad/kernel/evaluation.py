@@ -97,6 +97,8 @@ def _de_boor(
     span = np.clip(np.searchsorted(sequence, parameters, side=side) - 1, degree, last)
     # A parameter at the very end belongs to the last span that has a length.
     span = np.minimum(span, np.searchsorted(sequence, sequence[-1], side="left") - 1)
+    # Knots that are NaN are in no order: what comes out is NaN, too, and told as that.
+    span = np.maximum(span, degree)
     return _blended(
         sequence,
         np.ascontiguousarray(poles),
