@@ -21,6 +21,11 @@ _LARGEST_MEMORY_GIB: Final = 1e6
 """GiB; more than any machine has, and still a number of bytes that systems take."""
 _READING: Final = "read"
 """The phase in which only the reader works on the file."""
+_CRASHES: Final = tuple(
+    -number
+    for number in (signal.SIGSEGV, signal.SIGABRT, signal.SIGBUS, signal.SIGFPE, signal.SIGILL)
+)
+"""Exit codes of a program that its own fault ended; other signals come from somebody else."""
 _MEMORY_SIGNALS: Final = (signal.SIGSEGV, signal.SIGABRT)
 MEMORY_ERRORS: Final = ("MemoryError", "_ArrayMemoryError")
 """Names of the errors that Python and numpy raise when they are refused memory."""
@@ -114,9 +119,9 @@ def _cause(ending: Ending, limits: WorkerLimits) -> tuple[str, str]:
             f"An internal error happened{where} ({ending.fault.error}: {text}). Please report it"
             " with the file."
         )
-    if ending.phase == _READING:
+    if ending.phase == _READING and ending.exit_code in _CRASHES:
         return "WorkerKilled", (
-            f"Reading the file ended the process by {_manner(ending)}: it is damaged in a way that"
+            f"The worker was ended{where} by {_manner(ending)}: the file is damaged in a way that"
             " its reader does not survive. Export it again."
         )
     return "WorkerKilled", (
