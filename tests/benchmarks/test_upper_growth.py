@@ -1,6 +1,7 @@
 """How carving and stitching grow with the number of wrinkles, and of faces of the upper.
 
 Processor time, so that what else the machine does counts for nothing; ratios within one run.
+By hand: ``pytest -n 0 -m slow tests/benchmarks``.
 """
 
 from __future__ import annotations
@@ -79,7 +80,7 @@ def warm() -> None:
     seconds(upper(1, 1, 400.0), [rails(200.0, 400.0)])
 
 
-@pytest.mark.benchmark(group="stitch")
+@pytest.mark.slow
 def test_the_time_for_wrinkles_grows_with_their_number_and_no_faster() -> None:
     warm()
     shape, numbers = upper(1, 1, 800.0), (1, 3, 10, 30)
@@ -90,7 +91,7 @@ def test_the_time_for_wrinkles_grows_with_their_number_and_no_faster() -> None:
     assert exponent <= LARGEST_EXPONENT, taken
 
 
-@pytest.mark.benchmark(group="stitch")
+@pytest.mark.slow
 def test_an_upper_of_a_thousand_faces_takes_eight_times_the_time_of_ten() -> None:
     warm()
     taken = [

@@ -59,7 +59,7 @@ class Source:
     """The file's bytes, decompressed, without a byte order mark."""
     is_compressed: bool
     """Whether the file was compressed with gzip, whatever it is called."""
-    sha256: str
+    sha256: str = ""
     """Of the file as it is stored: 64 hexadecimal digits."""
 
     def fail(self, found: str) -> InputError:

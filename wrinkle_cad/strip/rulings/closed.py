@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 from typing import Final
 
@@ -63,8 +64,13 @@ def rule_closed_strip(
         for crease in both.creases
         if first <= crease.ruling < last
     )
+    # From where the turn of the bridges starts, and a turn behind it: none is negative.
+    shifts = [
+        rail.length - float(turned.arc_at(at[:1])[0])
+        for rail, turned, at in zip(rails, turns, bridges, strict=True)
+    ]
     turn = ruled_strip_of(
-        FoundSheet(_part(sheet, first, last), found.spacing, found.held - first),
+        FoundSheet(_part(sheet, first, last, shifts), found.spacing, found.held - first),
         turns[0],
         turns[1],
     )
@@ -118,8 +124,8 @@ def _between(rail: RailCurve, start: float, end: float) -> RailCurve:
     )
 
 
-def _part(sheet: Sheet, first: int, last: int) -> Sheet:
-    """The sheet from one ruling to another."""
+def _part(sheet: Sheet, first: int, last: int, shifts: Sequence[float]) -> Sheet:
+    """The sheet from one ruling to another, its arcs on P and Q moved on by so many mm."""
     rulings, at, between = sheet.rulings, slice(first, last + 1), slice(first, last)
     return Sheet(
         rulings=Stations(
@@ -129,8 +135,8 @@ def _part(sheet: Sheet, first: int, last: int) -> Sheet:
             rulings.q_piece[between],
             rulings.way[between],
         ),
-        p_arc=sheet.p_arc[at],
-        q_arc=sheet.q_arc[at],
+        p_arc=sheet.p_arc[at] + shifts[0],
+        q_arc=sheet.q_arc[at] + shifts[1],
         reach=sheet.reach[at],
         direction=sheet.direction[at],
         p_normal=sheet.p_normal[between],

@@ -22,7 +22,6 @@ from .sheet import Sheet
 from .vectors import cosines
 
 Floats = npt.NDArray[np.float64]
-Ints = npt.NDArray[np.int64]
 
 _ROUND_OFF: Final = 1e-9
 """A place this share of a closed rail before its cut is the cut."""
@@ -81,15 +80,12 @@ def cut_difference(
     """
     whole = ruled_area(sheet)
     larger = area / whole - 1.0 if whole > 0.0 else 0.0
-    p_at, p_turn = _on_piece(rails[0], sheet.p_arc, is_closed=is_closed)
-    q_at, q_turn = _on_piece(rails[1], sheet.q_arc, is_closed=is_closed)
+    longer, p_at = _longer(sheet, rails, is_closed=is_closed)
     # A ruling across the cut of a closed strip has its ends on either side of the piece.
-    known = np.flatnonzero((p_turn == q_turn) | (rails[0].arc[-1] == 0) | (rails[1].arc[-1] == 0))
+    known = np.flatnonzero(np.isfinite(longer))
     if not known.size:
         return CutDifference(0.0, 0.0, 0.0, larger)
-    start, end = _points(rails[0], p_at[known]), _points(rails[1], q_at[known])
-    x, y = (end - start).T
-    longer = np.sqrt(x * x + y * y) - sheet.reach[known]
+    longer = longer[known]
     worst = int(np.argmax(np.abs(longer)))
     at = known[worst]
     return CutDifference(float(longer[worst]), float(sheet.reach[at]), float(p_at[at]), larger)
@@ -116,13 +112,39 @@ def ruled_area(sheet: Sheet) -> float:
     return math.fsum((reach * moved).tolist())
 
 
-def _on_piece(rail: FlatRail, arc: Floats, *, is_closed: bool) -> tuple[Floats, Ints]:
-    """Arc lengths within the piece, and how often the rail was run round before."""
+def _longer(
+    sheet: Sheet, rails: tuple[FlatRail, FlatRail], *, is_closed: bool
+) -> tuple[Floats, Floats]:
+    """How much longer each ruling is on the piece in mm, NaN across its cut; where it is on P.
+
+    A ruling with an end at the cut itself lies on either side of the piece: the side where its
+    other end is, and of two such sides that where its length differs less.
+    """
+    longer, place = np.full(len(sheet.reach), np.nan), np.zeros(len(sheet.reach))
+    is_point = rails[0].arc[-1] == 0.0 or rails[1].arc[-1] == 0.0
+    for p_at, p_turn in _on_piece(rails[0], sheet.p_arc, is_closed=is_closed):
+        for q_at, q_turn in _on_piece(rails[1], sheet.q_arc, is_closed=is_closed):
+            x, y = (_points(rails[1], q_at) - _points(rails[0], p_at)).T
+            found = np.sqrt(x * x + y * y) - sheet.reach
+            is_better = ~(np.abs(longer) <= np.abs(found))
+            is_better &= (p_turn == q_turn) | is_point
+            longer, place = np.where(is_better, found, longer), np.where(is_better, p_at, place)
+    return longer, place
+
+
+def _on_piece(rail: FlatRail, arc: Floats, *, is_closed: bool) -> list[tuple[Floats, Floats]]:
+    """Arc lengths within the piece, and how often the rail was run round before.
+
+    The second of a closed rail is where the first is at the cut: the other end of the piece; the
+    turns of the rest are NaN there.
+    """
     length = float(rail.arc[-1])
     if not is_closed or length == 0.0:
-        return np.minimum(arc, length), np.zeros(len(arc), dtype=np.int64)
+        return [(np.minimum(arc, length), np.zeros(len(arc)))]
     turn = np.floor(arc / length + _ROUND_OFF)
-    return np.clip(arc - turn * length, 0.0, length), turn.astype(np.int64)
+    at = np.clip(arc - turn * length, 0.0, length)
+    is_cut = at <= _ROUND_OFF * length
+    return [(at, turn), (np.full_like(at, length), np.where(is_cut, turn - 1.0, np.nan))]
 
 
 def _points(rail: FlatRail, arc: Floats) -> Floats:
