@@ -1,23 +1,14 @@
-"""Shaded pictures of shells from two views, with matplotlib alone."""
+"""Triangles of faces and their shades, for pictures drawn with matplotlib alone."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from pathlib import Path
-
 import numpy as np
-from build123d import Compound, Face
 from numpy.typing import NDArray
 from OCP.BRep import BRep_Tool
-from OCP.BRepMesh import BRepMesh_IncrementalMesh
 from OCP.TopAbs import TopAbs_REVERSED
 from OCP.TopLoc import TopLoc_Location
 from OCP.TopoDS import TopoDS_Face
 
-VIEWS = ((32.0, -58.0), (38.0, 62.0))
-"""Elevation and azimuth in degrees: from the outer and from the inner side, over the toe."""
-CHORD = 0.06
-"""mm; how far the drawn triangles may lie from the surface."""
 LIGHT = np.array([0.25, 0.1, 0.96])
 Floats = NDArray[np.float64]
 Color = tuple[float, float, float]
@@ -55,45 +46,3 @@ def shaded(triangles: Floats, color: Color, toward: Floats) -> Floats:
     return np.column_stack(
         (np.clip(base * diffuse[:, None] + shine[:, None], 0, 1), np.ones(len(base)))
     )
-
-
-def draw(
-    parts: Sequence[tuple[Sequence[TopoDS_Face], Color]],
-    path: Path,
-    *,
-    views: Sequence[tuple[float, float]] = VIEWS,
-) -> None:
-    """Writes a PNG of the parts, each in its color, one picture per view side by side."""
-    import matplotlib as mpl
-
-    mpl.use("Agg")
-    import matplotlib.pyplot as plt
-    from mpl_toolkits.mplot3d.art3d import Poly3DCollection
-
-    whole = Compound([Face(face) for faces, _ in parts for face in faces])
-    BRepMesh_IncrementalMesh(whole.wrapped, CHORD, False, 0.08, False)
-    meshed = [
-        (np.concatenate([face_triangles(face) for face in faces]), color)
-        for faces, color in parts
-        if faces
-    ]
-    everything = np.concatenate([triangles for triangles, _ in meshed])
-    low, high = everything.min(axis=(0, 1)), everything.max(axis=(0, 1))
-    figure = plt.figure(figsize=(7.0 * len(views), 4.4), dpi=90)
-    for i, (elevation, azimuth) in enumerate(views):
-        axes = figure.add_subplot(1, len(views), i + 1, projection="3d", proj_type="ortho")
-        e, a = np.radians([elevation, azimuth])
-        toward = np.array([np.cos(e) * np.cos(a), np.cos(e) * np.sin(a), np.sin(e)])
-        colors = np.concatenate([shaded(triangles, color, toward) for triangles, color in meshed])
-        axes.add_collection3d(
-            Poly3DCollection(
-                everything, facecolors=colors, edgecolors=colors, linewidths=0.25, clip_on=False
-            )
-        )
-        axes.set(xlim=(low[0], high[0]), ylim=(low[1], high[1]), zlim=(low[2], high[2]))
-        axes.set_box_aspect(tuple(high - low), zoom=1.055)
-        axes.view_init(elevation, azimuth)
-        axes.set_axis_off()
-    figure.subplots_adjust(0, 0, 1, 1, 0, 0)
-    figure.savefig(path)
-    plt.close(figure)

@@ -95,7 +95,7 @@ def chromium() -> Iterator[webdriver.Chrome]:
     driver = shutil.which("chromedriver")
     options.binary_location = shutil.which("chromium") or ""
     browser = webdriver.Chrome(options=options, service=Service(driver) if driver else None)
-    browser.set_script_timeout(300)
+    browser.set_script_timeout(PATIENCE_S)
     try:
         yield browser
     finally:

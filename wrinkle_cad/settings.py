@@ -47,12 +47,13 @@ COINCIDENT_SAGITTAS: Final = 0.3
 chord tolerance is a quarter of a sagitta."""
 
 CROSSING_PER_SIZE: Final = 4e-3
-"""A strip passes through itself along more than a typical sagitta, or than this share of its size:
-rails of points may have any sagitta."""
+"""Passing through itself is longer than a sagitta, or, since points have any, this of the size."""
 
 CREASE_DEG: Final = 5.0
 """A crease of so many degrees is called one."""
 
+STATES: Final = ("developable", "stretched", "creased", "folded")
+"""What a verdict may say of a strip, from the best to the worst."""
 STRETCH_PERCENT: Final = 0.1
 """A sheet that must give more is called stretched: half of the 0.2 at which sheet metal yields."""
 

@@ -89,6 +89,9 @@ def open_own(path: Path, beginnings: Sequence[bytes]) -> int:
         os.close(handle)
         raise _foreign(path, "is no regular file of one name")
     head = os.pread(handle, max(map(len, beginnings)), 0)
+    if not _is_beginning(head, beginnings):
+        os.close(handle)
+        raise _foreign(path, "was not written by this program")
     if not any(head.startswith(own) for own in beginnings):
         # Torn: what is added to it now would follow a beginning that is nobody's.
         os.ftruncate(handle, 0)
@@ -130,6 +133,10 @@ def _begins_with(path: Path, beginnings: Sequence[bytes]) -> bool:
         head = os.read(handle, max(map(len, beginnings)))
     finally:
         os.close(handle)
+    return _is_beginning(head, beginnings)
+
+
+def _is_beginning(head: bytes, beginnings: Sequence[bytes]) -> bool:
     # A beginning that a power cut tore is still ours.
     return any(head.startswith(own) or own.startswith(head) for own in beginnings)
 

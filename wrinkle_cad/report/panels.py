@@ -12,7 +12,6 @@ from .numbers import Numbers, written
 from .views import MeshView, StripView
 
 _IDLE: Final = "Point at the strip: the same bridge lights up in every view."
-_STATES: Final = ("developable", "stretched", "creased", "folded")
 _COLORS: Final = (
     ("state", "Verdict"),
     ("validity", "Validity"),
@@ -64,7 +63,7 @@ def figures_panel(numbers: Numbers) -> Element:
         ),
         class_="tiles",
     )
-    if sum(strip.get("role") != "band" for strip in numbers.get("/strips")) <= 1:
+    if len(_wrinkles(numbers)) <= 1:
         return shown
     words = f"Worst wrinkle: {numbers.get(f'{entry}/name')}"
     return node("section", node("h2", words, class_="head"), shown)
@@ -97,15 +96,20 @@ def _radius(numbers: Numbers, entry: str) -> list[Element | str]:
     return [*shown]
 
 
+def _wrinkles(numbers: Numbers) -> list[int]:
+    """Which of the strips are no bands."""
+    entries = numbers.get("/strips") or []
+    return [at for at, entry in enumerate(entries) if entry.get("role") != "band"]
+
+
 def _worst_strip(numbers: Numbers) -> int:
     """The wrinkle of the worst state, and among equals of the largest strain."""
     entries = numbers.get("/strips") or [{}]
-    leading = [at for at, entry in enumerate(entries) if entry.get("role") != "band"]
-    return max(leading or range(len(entries)), key=lambda at: _badness(entries[at]))
+    return max(_wrinkles(numbers) or range(len(entries)), key=lambda at: _badness(entries[at]))
 
 
 def _badness(entry: Mapping[str, Any]) -> tuple[int, float, float]:
-    state = _STATES.index(entry["state"]) if "state" in entry else 0
+    state = settings.STATES.index(entry["state"]) if "state" in entry else 0
     crease = max((float(crease["angle_deg"]) for crease in entry.get("creases", ())), default=0.0)
     return state, crease, float(entry.get("max_strain_percent") or 0.0)
 
@@ -205,8 +209,7 @@ def strip_section(numbers: Numbers, index: int, view: StripView) -> Element:
     parts = [_matrix_card(numbers, index, view), _curves_card(numbers, index, view)]
     if view.pieces:
         parts.append(_pattern_card(view))
-    leading = [at for at, entry in enumerate(numbers.get("/strips")) if entry.get("role") != "band"]
-    is_printed = bool(view.pieces) and index in leading[:_PRINTED_PATTERNS]
+    is_printed = bool(view.pieces) and index in _wrinkles(numbers)[:_PRINTED_PATTERNS]
     kind = "strip-views" if is_printed else "strip-views screen-only"
     return node("section", *parts, class_=kind, data_strip=str(index))
 

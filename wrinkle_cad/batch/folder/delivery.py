@@ -9,6 +9,7 @@ from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any, Final
 
+from wrinkle_cad import settings
 from wrinkle_cad.batch.workers.task import TaskResult
 from wrinkle_cad.errors import JobError, WrinkleError
 from wrinkle_cad.files.names import error_words, printable
@@ -29,7 +30,6 @@ from .ownership import Hashes, may_replace
 _SUMS: Final = ("interior_bridges", "invalid_bridges", "inflection_bridges")
 _SUMMED_MEASURES: Final = ("area_3d_mm2", "area_pattern_mm2")
 _LARGEST: Final = ("max_strain_percent", "max_twist_deg", "max_fold_deg")
-_STATES: Final = ("developable", "stretched", "creased", "folded")
 
 
 def deliver(
@@ -133,7 +133,8 @@ def figures_of(summary: Mapping[str, Any]) -> dict[str, Any]:
         figures[name] = math.fsum(float(strip.get(name, 0.0)) for strip in strips)
     figures["overlaps"] = any(bool(strip.get("overlaps")) for strip in strips)
     leading = [strip for strip in strips if strip.get("role") != "band"] or strips
-    figures["state"] = max((strip.get("state", _STATES[0]) for strip in leading), key=_STATES.index)
+    states = [strip.get("state", settings.STATES[0]) for strip in leading]
+    figures["state"] = max(states, key=settings.STATES.index)
     for name in _LARGEST:
         figures[name] = max(float(strip.get(name, 0.0)) for strip in leading)
     creases = [crease for strip in leading for crease in strip.get("creases", ())]

@@ -11,9 +11,10 @@ from collections.abc import Sequence
 from functools import cache
 from importlib.resources import files
 from pathlib import Path, PurePosixPath
-from typing import Final
+from typing import Final, NamedTuple
 from urllib.parse import quote
 
+from wrinkle_cad import settings
 from wrinkle_cad.files.names import printable
 from wrinkle_cad.files.own import write_own
 
@@ -53,10 +54,7 @@ _OPEN_RECORDS: Final = 5
 _OUTLINE: Final = re.compile(r"(?:\d{1,9}(?:\.\d{1,6})?,\d{1,9}(?:\.\d{1,6})? ?){3,100}")
 """The points of a picture; whatever else a manifest has there is not drawn."""
 _CHOICES: Final = (
-    ("developable", "developable"),
-    ("stretched", "stretched"),
-    ("creased", "creased"),
-    ("folded", "folded"),
+    *((state, state) for state in settings.STATES),
     ("passed", "PASS"),
     ("missed", "FAIL"),
     ("failed", "failed"),
@@ -76,6 +74,17 @@ _HEADER: Final = (
     "seconds",
     "outcome",
 )
+
+
+class _Cell(NamedTuple):
+    """One cell of the table."""
+
+    content: str
+    """HTML, whatever comes from a file escaped."""
+    key: str
+    """What the column is sorted by."""
+    kind: str = "text"
+    """Its class."""
 
 
 def write_index_page(folder: Path, records: Sequence[Record], summary: BatchSummary) -> None:
@@ -160,16 +169,16 @@ def _kinds(record: Record) -> list[str]:
     state = str(record.figures.get("state", ""))
     judged = record.figures.get("limits") or record.missed_limits
     kinds = ["missed" if record.missed_limits else "passed"] if judged else []
-    return [*(kind for kind, _ in _CHOICES[:4] if kind == state), *kinds]
+    return [*([state] if state in settings.STATES else []), *kinds]
 
 
 def _row(record: Record) -> str:
     state = printable(str(record.figures.get("state", "")))
-    tone = state if state in {kind for kind, _ in _CHOICES[:4]} else ""
+    tone = state if state in settings.STATES else ""
     cells = [
-        _cell(_thumbnail(record), "", "picture"),
-        _cell(_link(record), record.input, "file"),
-        _cell(f'<span class="state {tone}">{html.escape(state)}</span>' if state else "", state),
+        _Cell(_thumbnail(record), "", "picture"),
+        _Cell(_link(record), record.input, "file"),
+        _Cell(f'<span class="state {tone}">{html.escape(state)}</span>' if state else "", state),
         _developability(record),
         _number(record, "max_strain_percent", "{:.3f}%"),
         _number(record, "max_crease_deg", "{:.1f}&deg;"),
@@ -177,15 +186,15 @@ def _row(record: Record) -> str:
         _number(record, "max_twist_deg", "{:.2f}&deg;"),
         _number(record, "cut_longer_percent", "{:.1f}%"),
         _number(record, "area_pattern_mm2", "{:,.1f} mm&sup2;"),
-        _cell(f"{total_seconds(record):.2f} s", f"{total_seconds(record):.6f}", "number"),
+        _Cell(f"{total_seconds(record):.2f} s", f"{total_seconds(record):.6f}", "number"),
         _outcome(record),
     ]
-    cells[-1] = cells[-1].replace('class="text"', 'class="outcome"', 1)
-    titled = "".join(
-        cell.replace("<td ", f'<td data-title="{title}" ', 1)
+    shown = "".join(
+        f'<td data-title="{title}" class="{cell.kind}"'
+        f' data-key="{html.escape(printable(cell.key))}">{cell.content}</td>'
         for title, cell in zip(_HEADER, cells, strict=True)
     )
-    return f'<tr data-kinds="{" ".join(_kinds(record))}">{titled}</tr>'
+    return f'<tr data-kinds="{" ".join(_kinds(record))}">{shown}</tr>'
 
 
 def _thumbnail(record: Record) -> str:
@@ -211,33 +220,33 @@ def _link(record: Record) -> str:
     return f'<a href="{html.escape(quote(target.encode("utf-8", "surrogatepass")))}">{name}</a>'
 
 
-def _developability(record: Record) -> str:
+def _developability(record: Record) -> _Cell:
     value = record.figures.get("developability")
     if not isinstance(value, int | float) or not math.isfinite(value):
-        return _cell("", "-1", "number")
+        return _Cell("", "-1", "number")
     bar = f'<span class="bar"><i style="width:{min(max(value, 0.0), 100.0):.1f}%"></i></span>'
-    return _cell(f"{value:.1f}% {bar}", f"{value:.6f}", "number")
+    return _Cell(f"{value:.1f}% {bar}", f"{value:.6f}", "number")
 
 
-def _number(record: Record, name: str, form: str) -> str:
+def _number(record: Record, name: str, form: str) -> _Cell:
     value = record.figures.get(name)
     if not isinstance(value, int | float) or not math.isfinite(value):
-        return _cell("", "-1", "number")
-    return _cell(form.format(value), f"{value:.6f}", "number")
+        return _Cell("", "-1", "number")
+    return _Cell(form.format(value), f"{value:.6f}", "number")
 
 
-def _outcome(record: Record) -> str:
+def _outcome(record: Record) -> _Cell:
     if record.outcome == WAITING:
-        return _cell(html.escape(printable(_waiting_text(record))), WAITING)
+        return _Cell(html.escape(printable(_waiting_text(record))), WAITING, "outcome")
     if not record.is_done:
         text = html.escape(printable(f"failed: {record.message}"))
-        return _cell(f'<span class="failed">{text}</span>', "failed")
+        return _Cell(f'<span class="failed">{text}</span>', "failed", "outcome")
     if record.missed_limits:
         text = html.escape(printable("FAIL: " + "; ".join(record.missed_limits)))
-        return _cell(f'<span class="failed">{text}</span>', "done, misses a limit")
+        return _Cell(f'<span class="failed">{text}</span>', "done, misses a limit", "outcome")
     if record.figures.get("limits"):
-        return _cell('<span class="passed">PASS</span>', "done")
-    return _cell("done", "done")
+        return _Cell('<span class="passed">PASS</span>', "done", "outcome")
+    return _Cell("done", "done", "outcome")
 
 
 def _waiting_text(record: Record) -> str:
@@ -245,7 +254,3 @@ def _waiting_text(record: Record) -> str:
     if record.message:
         return f"not come to; failed in an earlier batch: {record.message}"
     return "not come to; done by an earlier batch" if record.outputs else "not come to"
-
-
-def _cell(content: str, key: str, kind: str = "text") -> str:
-    return f'<td class="{kind}" data-key="{html.escape(printable(key))}">{content}</td>'

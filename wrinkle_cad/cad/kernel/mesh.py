@@ -78,16 +78,15 @@ def _meshes_of(
     faces = faces_of(own)
     apices = [apex_of(face) for face in faces]
     others = [face for face, apex in zip(faces, apices, strict=True) if apex is None]
+    cones = [(face, apex) for face, apex in zip(faces, apices, strict=True) if apex is not None]
     if curved_tolerance > tolerance:
         plain = [face for face in others if not _is_curved_both_ways(face)]
         # What is meshed already keeps its points, those on shared edges too; cones only lend those.
         _mesh(plain, wanted)
-        _mesh([face for face in faces if apex_of(face) is not None], _on_edges_only(wanted))
+        _mesh([face for face, _ in cones], _on_edges_only(tolerance, angular_tolerance))
         _mesh(others, _wanted(curved_tolerance, angular_tolerance))
-    elif others:
-        # All at once: faces that share an edge must have the same points on it.
-        BRepMesh_IncrementalMesh(make_compound(others), wanted)
-    cones = [(face, at) for face, at in zip(faces, apices, strict=True) if at is not None]
+    else:
+        _mesh(others, wanted)
     fans = fans_of(cones, others, wanted)
     for face, apex in zip(faces, apices, strict=True):
         if apex is not None:
@@ -103,15 +102,16 @@ def _wanted(tolerance: float, angular_tolerance: float) -> IMeshTools_Parameters
     return wanted
 
 
-def _on_edges_only(wanted: IMeshTools_Parameters) -> IMeshTools_Parameters:
+def _on_edges_only(tolerance: float, angular_tolerance: float) -> IMeshTools_Parameters:
     """The same without points inside of faces."""
-    own = _wanted(wanted.Deflection / settings.MESH_SAG_PER_TOLERANCE, wanted.Angle)
+    own = _wanted(tolerance, angular_tolerance)
     own.InternalVerticesMode = False
     own.ControlSurfaceDeflection = False
     return own
 
 
 def _mesh(faces: Sequence[TopoDS_Face], wanted: IMeshTools_Parameters) -> None:
+    """Meshes faces all at once: those that share an edge must have the same points on it."""
     if faces:
         BRepMesh_IncrementalMesh(make_compound(faces), wanted)
 

@@ -5,47 +5,22 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator
 from contextlib import contextmanager
+from importlib import import_module
 from typing import Final
-
-from OCP import (
-    BRepExtrema,
-    Geom,
-    Geom2d,
-    GProp,
-    Interface,
-    LProp,
-    Standard,
-    StdFail,
-    Storage,
-    TopoDS,
-    Transfer,
-    gp,
-)
-from OCP import math as kernel_math
 
 from wrinkle_cad.errors import CadError
 from wrinkle_cad.files.names import error_words
 
+_MODULES: Final = (
+    "BRepExtrema", "Geom", "Geom2d", "GProp", "Interface", "LProp", "Standard", "StdFail",
+    "Storage", "TopoDS", "Transfer", "gp", "math",
+)  # fmt: skip
 # The bindings register each class on its own: they share no base but Exception.
 KERNEL_ERRORS: tuple[type[Exception], ...] = (
     *(
         kind
-        for module in (
-            BRepExtrema,
-            Geom,
-            Geom2d,
-            GProp,
-            Interface,
-            LProp,
-            Standard,
-            StdFail,
-            Storage,
-            TopoDS,
-            Transfer,
-            gp,
-            kernel_math,
-        )
-        for kind in vars(module).values()
+        for module in _MODULES
+        for kind in vars(import_module(f"OCP.{module}")).values()
         if isinstance(kind, type) and issubclass(kind, Exception)
     ),
     RuntimeError,

@@ -97,10 +97,7 @@ Report.space = (THREE, canvas, panel) => {
       const skin = own ? unpacked(own) : { points: chords, corners: Uint32Array.from({ length: chords.length / 3 }, (_, at) => at) };
       made.addStrip(skin.points, skin.corners, () => item.group.visible);
     });
-    if (packed.body) {
-      const { points, corners: triangles } = unpacked(packed.body);
-      made.addBody(points, triangles, () => solid.visible);
-    }
+    if (solid) made.addBody(solid.geometry.attributes.position.array, solid.geometry.index.array, () => solid.visible);
     made.furnish();
     return made;
   }
