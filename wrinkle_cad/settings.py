@@ -17,8 +17,7 @@ PLANARITY_PER_TOLERANCE: Final = 1e-3
 """A neighbour may lie this share of the chord tolerance on the wrong side of a tangent plane.
 
 Near the chord tolerance itself every bridge would count as valid; at zero, round-off rejects
-bridges of exact developables.
-"""
+bridges of exact developables."""
 
 PLANARITY_FLOOR_PER_COORDINATE: Final = 1e-13
 """Planarity is never below this share of the largest coordinate: round-off, times the ratio of
@@ -47,7 +46,8 @@ COINCIDENT_SAGITTAS: Final = 0.3
 chord tolerance is a quarter of a sagitta."""
 
 CROSSING_PER_SIZE: Final = 4e-3
-"""Passing through itself is longer than a sagitta, or, since points have any, this of the size."""
+"""A strip passes through itself along more than a typical sagitta, or than this share of its size:
+rails of points may have any sagitta."""
 
 CREASE_DEG: Final = 5.0
 """A crease of so many degrees is called one."""
